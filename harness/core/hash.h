@@ -21,7 +21,7 @@ class Hasher {
   Hasher& text(std::string_view s);
   template <class T>
   Hasher& value(const T& v) {
-    static_assert(std::is_trivially_copyable_v<T> && std::has_unique_object_representations_v<T> ||
+    static_assert((std::is_trivially_copyable_v<T> && std::has_unique_object_representations_v<T>) ||
                   std::is_floating_point_v<T>);
     return bytes(&v, sizeof v);
   }
