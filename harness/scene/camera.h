@@ -22,6 +22,7 @@ struct Camera {
   Mat4d clip_from_world(int width, int height) const;
   // The ray through pixel coordinates (x, y), pixel centres at +0.5, row 0 on top. Not normalised: forward component 1.
   Vec3d ray_direction(double x, double y, int width, int height) const;
+  bool operator==(const Camera&) const = default;
 };
 
 }  // namespace penumbra

@@ -31,6 +31,7 @@ struct Light {
   Vec3f at(float s, float t) const { return center + edge_u * (s - 0.5f) + edge_v * (t - 0.5f); }
   // Rectangle: diagonal; sphere: diameter; otherwise 0. In scene units.
   float size() const;
+  bool operator==(const Light&) const = default;
 };
 
 // The same light with another size (see Light::size), keeping centre and shape. Size 0 makes it a point light at its
