@@ -8,6 +8,13 @@
 
 namespace penumbra::embree {
 
+// The scene flag without which a Query's filter is not called.
+#if PENUMBRA_EMBREE_VERSION >= 4
+inline constexpr RTCSceneFlags query_filter_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+#else
+inline constexpr RTCSceneFlags query_filter_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+#endif
+
 enum class Coherence { coherent, incoherent };
 
 // What a query needs besides the rays: flags, and optionally a filter called on each candidate hit with `user` behind
