@@ -1,10 +1,14 @@
 #include "techniques/registry.h"
 
+#include "techniques/ray_tracing/ray_tracing.h"
+
 namespace penumbra {
 
 // One line per technique, in the order in which they are listed and reported.
 Registry all_techniques() {
-  return {};
+  return {
+      ray_tracing_technique(),
+  };
 }
 
 }  // namespace penumbra

@@ -1,0 +1,44 @@
+// Embree's device and its hierarchy over one scene's triangles, built anew or refitted.
+#pragma once
+#include <atomic>
+#include <cstdint>
+
+#include "embree/embree.h"
+#include "scene/scene.h"
+
+namespace penumbra::ray_tracing {
+
+enum class Quality { low, medium, high, refit };
+
+class Hierarchy {
+ public:
+  Hierarchy(Quality quality, bool dynamic, bool robust);
+  ~Hierarchy();
+  Hierarchy(const Hierarchy&) = delete;
+  Hierarchy& operator=(const Hierarchy&) = delete;
+
+  // New topology: replaces what was there. Throws PointError when Embree is out of memory.
+  void load(const Geometry& geometry);
+  // The same topology, moved. Needs an earlier load() of as many vertices.
+  void move(const Geometry& geometry);
+  bool fits(const Geometry& geometry) const;
+  // Builds or refits after load() or move().
+  void commit();
+
+  RTCScene scene() const { return scene_; }
+  // What Embree holds now: hierarchy, vertex and index copies.
+  uint64_t bytes() const { return static_cast<uint64_t>(bytes_.load(std::memory_order_relaxed)); }
+
+ private:
+  void check() const;
+
+  Quality quality_;
+  std::atomic<int64_t> bytes_{0};
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  RTCGeometry triangles_ = nullptr;
+  void* vertices_ = nullptr;
+  std::size_t vertex_count_ = 0, triangle_count_ = 0;
+};
+
+}  // namespace penumbra::ray_tracing

@@ -1,0 +1,40 @@
+// Light samples put into packets of neighbours, and the way back from a packet's lanes to the mask's bits.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "samples/light_samples.h"
+
+namespace penumbra::ray_tracing {
+
+class LightPackets {
+ public:
+  // `lanes` consecutive lanes from `lane` on are bits `shift` and up of mask word `word`.
+  struct Run {
+    uint32_t word, lane_bits;  // lane_bits: mask of the run's lanes, moved down to bit 0
+    uint8_t lane, shift;
+  };
+
+  // Lanes of a packet are a tile of a grid of samples (4 x 4 for 16), or neighbours along a Morton curve.
+  void assign(const LightSamples& samples, int lanes);
+
+  std::size_t count() const { return first_run_.size() - 1; }
+  // Coordinates of packet p's lanes start at p * lanes(). Lanes past the last sample repeat it.
+  const float* x(std::size_t packet) const { return &x_[packet * lanes_]; }
+  const float* y(std::size_t packet) const { return &y_[packet * lanes_]; }
+  const float* z(std::size_t packet) const { return &z_[packet * lanes_]; }
+  // Bit i set: lane i holds a sample.
+  uint32_t used(std::size_t packet) const { return packet + 1 < count() ? full_ : last_; }
+  const Run* runs_begin(std::size_t packet) const { return &runs_[first_run_[packet]]; }
+  const Run* runs_end(std::size_t packet) const { return runs_.data() + first_run_[packet + 1]; }
+  uint64_t bytes() const;
+
+ private:
+  std::size_t lanes_ = 1;
+  uint32_t full_ = 0, last_ = 0;
+  std::vector<float> x_, y_, z_;
+  std::vector<Run> runs_;
+  std::vector<uint32_t> first_run_{0};
+};
+
+}  // namespace penumbra::ray_tracing

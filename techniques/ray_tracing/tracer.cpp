@@ -1,0 +1,244 @@
+#include "techniques/ray_tracing/tracer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <numbers>
+
+#include "core/parallel.h"
+#include "embree/flush_denormals.h"
+#include "techniques/ray_tracing/ray_packet.h"
+
+namespace penumbra::ray_tracing {
+namespace {
+
+// Pixels are traced in square tiles: neighbours in the picture walk the same part of the hierarchy.
+constexpr int tile_side = 16;
+constexpr std::size_t tile_pixels = tile_side * tile_side;
+
+int tiles_across(int pixels) { return (pixels + tile_side - 1) / tile_side; }
+
+// Where the horizon rule is judged (P) and where the rays start (P').
+struct ViewSample {
+  Vec3f position, origin, normal;
+};
+
+ViewSample view_sample(const ViewSamplesHost& view, std::size_t pixel) {
+  return {view.position[pixel].xyz(), view.origin[pixel].xyz(), view.geometric_normal[pixel].xyz()};
+}
+
+// The shared horizon rule: a light sample with dot(Ng, L - P) <= 0 is blocked without a ray. P is the
+// position, not the ray's origin P'. `scale` is 1, or 0 for a light at infinity, where L is a direction.
+float height(const ViewSample& v, float x, float y, float z, float scale) {
+  return v.normal.x * (x - scale * v.position.x) + v.normal.y * (y - scale * v.position.y) +
+         v.normal.z * (z - scale * v.position.z);
+}
+
+// Pixel i of a tile: 4 x 4 blocks, each in Morton order, so that 4, 8 or 16 consecutive pixels are 2 x 2, 4 x
+// 2 or 4 x 4.
+void pixel_in_tile(std::size_t i, int& x, int& y) {
+  const int block = static_cast<int>(i / 16), inside = static_cast<int>(i % 16);
+  x = block % (tile_side / 4) * 4 + (inside & 1) + (inside >> 2 & 1) * 2;
+  y = block / (tile_side / 4) * 4 + (inside >> 1 & 1) + (inside >> 3 & 1) * 2;
+}
+
+}  // namespace
+
+struct Tracer::Job {
+  RTCScene scene;
+  const ViewSamplesHost& view;
+  std::span<float> visibility;
+  std::span<uint32_t> mask;
+  mutable std::atomic<uint64_t> rays{0}, without_ray{0};
+};
+
+// One tile's pixels that need rays.
+struct Tracer::Task {
+  const Job& job;
+  const uint32_t* pixels;
+  std::size_t pixel_count;
+  mutable uint64_t rays = 0;
+};
+
+void Tracer::assign(const Light& light, const LightSamples& samples, const TraceSettings& settings) {
+  settings_ = settings;
+  packets_.assign(samples, settings.packet);
+  points_ = samples.points;
+  weights_ = samples.weights;
+  uniform_ = samples.uniform_weights;
+  at_infinity_ = samples.points.front().w == 0;
+  kind_ = light.kind, center_ = light.center, direction_ = light.direction;
+  cone_cosine_ = static_cast<float>(std::cos(light.cone_degrees * std::numbers::pi / 180));
+  words_ = static_cast<std::size_t>(samples.mask_words());
+}
+
+uint64_t Tracer::bytes() const {
+  return packets_.bytes() + points_.capacity() * sizeof(Vec4f) + weights_.capacity() * sizeof(float);
+}
+
+// A rectangle shines from its front only and a spot light inside its cone only.
+bool Tracer::lit_side(Vec3f position) const {
+  const Vec3f from_light = position - center_;
+  if (kind_ == LightKind::rectangle || kind_ == LightKind::textured_rectangle)
+    return dot(direction_, from_light) > 0;
+  if (kind_ == LightKind::spot) return dot(direction_, from_light) >= cone_cosine_ * length(from_light);
+  return true;
+}
+
+float Tracer::visibility(const uint32_t* mask) const {
+  if (uniform_) {
+    int blocked = 0;
+    for (std::size_t w = 0; w < words_; ++w) blocked += std::popcount(mask[w]);
+    return static_cast<float>(static_cast<int>(points_.size()) - blocked) /
+           static_cast<float>(points_.size());
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if ((mask[i / 32] >> (i % 32) & 1) == 0) sum += static_cast<double>(weights_[i]);
+  return static_cast<float>(std::min(sum, 1.0));
+}
+
+// The pixels of a tile that need rays, in the order of pixel_in_tile(); the others' outputs are written here.
+std::size_t Tracer::gather(const Job& job, std::size_t tile, uint32_t* pixels) const {
+  const int across = tiles_across(job.view.width);
+  const int x0 = static_cast<int>(tile) % across * tile_side,
+            y0 = static_cast<int>(tile) / across * tile_side;
+  const uint32_t tail = points_.size() % 32 ? (1U << points_.size() % 32) - 1 : ~0U;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tile_pixels; ++i) {
+    int x = 0, y = 0;
+    pixel_in_tile(i, x, y);
+    if (x0 + x >= job.view.width || y0 + y >= job.view.height) continue;
+    const std::size_t pixel = static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(job.view.width) +
+                              static_cast<std::size_t>(x0 + x);
+    uint32_t* mask = &job.mask[pixel * words_];
+    const bool sees = job.view.triangle[pixel] != no_triangle;
+    std::fill_n(mask, words_, 0U);
+    if (sees && lit_side(job.view.position[pixel].xyz())) {
+      pixels[count++] = static_cast<uint32_t>(pixel);
+      continue;
+    }
+    if (sees) std::fill_n(mask, words_, ~0U), mask[words_ - 1] = tail;
+    if (sees) job.without_ray.fetch_add(points_.size(), std::memory_order_relaxed);
+    job.visibility[pixel] = sees ? 0.0F : 1.0F;
+  }
+  return count;
+}
+
+// One view sample after the other, each packet a group of neighbouring light samples.
+template <int N>
+void Tracer::trace_light(const Task& task) const {
+  const Job& job = task.job;
+  embree::Query query(settings_.coherence);
+  ShadowRays<N> rays(at_infinity_);
+  const float scale = at_infinity_ ? 0.0F : 1.0F;
+  alignas(64) float minus_height[N];
+  for (std::size_t i = 0; i < task.pixel_count; ++i) {
+    const std::size_t pixel = task.pixels[i];
+    const ViewSample v = view_sample(job.view, pixel);
+    uint32_t* mask = &job.mask[pixel * words_];
+    for (int lane = 0; lane < N; ++lane)
+      rays.origin_x()[lane] = v.origin.x, rays.origin_y()[lane] = v.origin.y,
+      rays.origin_z()[lane] = v.origin.z;
+    for (std::size_t p = 0; p < packets_.count(); ++p) {
+      const float *x = packets_.x(p), *y = packets_.y(p), *z = packets_.z(p);
+      for (int lane = 0; lane < N; ++lane) {
+        minus_height[lane] = -height(v, x[lane], y[lane], z[lane], scale);
+        rays.direction_x()[lane] = x[lane] - scale * v.origin.x;
+        rays.direction_y()[lane] = y[lane] - scale * v.origin.y;
+        rays.direction_z()[lane] = z[lane] - scale * v.origin.z;
+      }
+      const uint32_t used = packets_.used(p), wanted = used & below_zero<N>(minus_height);
+      uint32_t bits = used & ~wanted;
+      if (wanted) bits |= rays.blocked(job.scene, query, wanted);
+      task.rays += static_cast<uint64_t>(std::popcount(wanted));
+      for (auto run = packets_.runs_begin(p); run != packets_.runs_end(p); ++run)
+        mask[run->word] |= (bits >> run->lane & run->lane_bits) << run->shift;
+    }
+    job.visibility[pixel] = visibility(mask);
+  }
+}
+
+// Each packet a group of neighbouring pixels, one light sample after the other.
+template <int N>
+void Tracer::trace_pixels(const Task& task) const {
+  const Job& job = task.job;
+  embree::Query query(settings_.coherence);
+  ShadowRays<N> rays(at_infinity_);
+  const float scale = at_infinity_ ? 0.0F : 1.0F;
+  for (std::size_t first = 0; first < task.pixel_count; first += N) {
+    const std::size_t used = std::min<std::size_t>(N, task.pixel_count - first);
+    ViewSample views[N];
+    uint32_t* masks[N];
+    for (std::size_t lane = 0; lane < N; ++lane) {
+      const std::size_t pixel = task.pixels[first + std::min(lane, used - 1)];
+      views[lane] = view_sample(job.view, pixel);
+      masks[lane] = &job.mask[pixel * words_];
+      rays.origin_x()[lane] = views[lane].origin.x, rays.origin_y()[lane] = views[lane].origin.y;
+      rays.origin_z()[lane] = views[lane].origin.z;
+    }
+    for (std::size_t s = 0; s < points_.size(); ++s) {
+      const Vec4f l = points_[s];
+      uint32_t wanted = 0;
+      for (std::size_t lane = 0; lane < N; ++lane) {
+        const Vec3f o = views[lane].origin;
+        if (lane < used && height(views[lane], l.x, l.y, l.z, scale) > 0) wanted |= 1U << lane;
+        rays.direction_x()[lane] = l.x - scale * o.x;
+        rays.direction_y()[lane] = l.y - scale * o.y;
+        rays.direction_z()[lane] = l.z - scale * o.z;
+      }
+      const uint32_t bits = ~wanted | (wanted ? rays.blocked(job.scene, query, wanted) : 0);
+      task.rays += static_cast<uint64_t>(std::popcount(wanted));
+      for (std::size_t lane = 0; lane < used; ++lane) masks[lane][s / 32] |= (bits >> lane & 1) << (s % 32);
+    }
+    for (std::size_t lane = 0; lane < used; ++lane)
+      job.visibility[task.pixels[first + lane]] = visibility(masks[lane]);
+  }
+}
+
+template <int N>
+void Tracer::run(const Job& job) const {
+  const std::size_t tiles = static_cast<std::size_t>(tiles_across(job.view.width)) *
+                            static_cast<std::size_t>(tiles_across(job.view.height));
+  struct Call {
+    const Tracer& tracer;
+    const Job& job;
+  } const call{*this, job};
+  // One captured reference: std::function then needs no memory of its own.
+  parallel_for(tiles, 1, [&call](std::size_t begin, std::size_t end) {
+    const embree::FlushDenormals flush;
+    const Tracer& tracer = call.tracer;
+    for (std::size_t tile = begin; tile < end; ++tile) {
+      uint32_t pixels[tile_pixels];
+      const std::size_t count = tracer.gather(call.job, tile, pixels);
+      const Task task{call.job, pixels, count};
+      if (tracer.settings_.pixels_in_packet)
+        tracer.trace_pixels<N>(task);
+      else
+        tracer.trace_light<N>(task);
+      call.job.rays.fetch_add(task.rays, std::memory_order_relaxed);
+      call.job.without_ray.fetch_add(count * tracer.points_.size() - task.rays, std::memory_order_relaxed);
+    }
+  });
+}
+
+TraceCounts Tracer::trace(RTCScene scene, const ViewSamplesHost& view, std::span<float> visibility_out,
+                          std::span<uint32_t> mask) const {
+  const Job job{scene, view, visibility_out, mask};
+  switch (settings_.packet) {
+    case 1:
+      run<1>(job);
+      break;
+    case 4:
+      run<4>(job);
+      break;
+    case 8:
+      run<8>(job);
+      break;
+    default:
+      run<16>(job);
+  }
+  return {job.rays.load(), job.without_ray.load()};
+}
+
+}  // namespace penumbra::ray_tracing

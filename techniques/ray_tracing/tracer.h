@@ -1,0 +1,60 @@
+// The shadow rays of a picture: every view sample to every light sample that is above its horizon.
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "embree/embree.h"
+#include "samples/view_samples.h"
+#include "techniques/ray_tracing/light_packets.h"
+
+namespace penumbra::ray_tracing {
+
+struct TraceSettings {
+  int packet = 16;                // 1, 4, 8 or 16 rays per call
+  bool pixels_in_packet = false;  // else a packet's rays go from one view sample to several light samples
+  embree::Coherence coherence = embree::Coherence::incoherent;
+};
+
+struct TraceCounts {
+  uint64_t rays = 0;
+  uint64_t without_ray = 0;  // light samples below the horizon, behind the rectangle or outside the cone
+};
+
+class Tracer {
+ public:
+  // What the loops need of the light. May allocate; trace() does not.
+  void assign(const Light& light, const LightSamples& samples, const TraceSettings& settings);
+
+  // Writes every pixel: its mask (mask_words words, 1 = blocked, bits past the count 0) and its visibility,
+  // the weight of the samples that are not blocked. Pixels without a view sample get 1 and an empty mask.
+  TraceCounts trace(RTCScene scene, const ViewSamplesHost& view, std::span<float> visibility,
+                    std::span<uint32_t> mask) const;
+
+  const TraceSettings& settings() const { return settings_; }
+  uint64_t bytes() const;
+
+ private:
+  struct Job;
+  struct Task;
+  template <int N>
+  void run(const Job& job) const;
+  template <int N>
+  void trace_light(const Task& task) const;
+  template <int N>
+  void trace_pixels(const Task& task) const;
+  std::size_t gather(const Job& job, std::size_t tile, uint32_t* pixels) const;
+  bool lit_side(Vec3f position) const;
+  float visibility(const uint32_t* mask) const;
+
+  TraceSettings settings_;
+  LightPackets packets_;
+  std::vector<Vec4f> points_;
+  std::vector<float> weights_;
+  bool uniform_ = true, at_infinity_ = false;
+  LightKind kind_ = LightKind::point;
+  Vec3f center_, direction_;
+  float cone_cosine_ = -1;
+  std::size_t words_ = 1;
+};
+
+}  // namespace penumbra::ray_tracing
