@@ -4,16 +4,10 @@
 
 #include <random>
 
+#include "tests/support/host_view.h"
+
 namespace penumbra::testing {
 namespace {
-
-void add_triangle(Geometry& g, Vec3f a, Vec3f b, Vec3f c) {
-  for (const Vec3f& p : {a, b, c}) {
-    g.indices.push_back(static_cast<uint32_t>(g.positions.size()));
-    g.positions.push_back(p);
-    g.bounds.extend(p);
-  }
-}
 
 // The unit square in z = 1 as two triangles that share its diagonal.
 Geometry square() {
