@@ -24,6 +24,7 @@ struct Geometry {
   std::vector<Vec3f> instance_albedo;
   Box bounds;
   bool closed = false;                   // every instance's mesh is closed and consistently wound (mirrored ones stay so)
+  std::vector<uint8_t> instance_closed;  // the same, one by one
   std::size_t triangle_count() const { return indices.size() / 3; }
   Vec3f corner(std::size_t triangle, int i) const { return positions[indices[3 * triangle + static_cast<std::size_t>(i)]]; }
 };
