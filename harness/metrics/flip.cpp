@@ -146,7 +146,7 @@ Band::Band(const View& image, const Filters& f, int y0, int rows)
       edge(y),
       point(y) {
   const std::size_t n = static_cast<std::size_t>(image.width);
-  std::array<Row, 4> channel;  // Y, Cx, Cz, and the luminance that features are found in
+  std::array<Row, 3> channel;
   for (Row& c : channel) c.resize(n);
   Row padded;
   int converted = -1;
@@ -157,15 +157,16 @@ Band::Band(const View& image, const Filters& f, int y0, int rows)
       for (std::size_t x = 0; x < n; ++x) {
         const Vec3f c = flip_color::opponent_from_linear(rgb[x]);
         channel[0][x] = c.x, channel[1][x] = c.y, channel[2][x] = c.z;
-        channel[3][x] = (c.x + 16) / 116;  // [Andersson 2020], errata: not 100
       }
       converted = source;
     }
+    // Features are found in the first channel as it is: (Y + 16) / 116 in the errata of [Andersson 2020] is
+    // its y.
     const auto filter = [&](std::size_t c, const Kernel& kernel, Plane& out) {
       filter_row(channel[c].data(), out.row(i), image.width, kernel, padded);
     };
     filter(0, f.y, y), filter(1, f.cx, cx), filter(2, f.cz[0], cz0), filter(2, f.cz[1], cz1);
-    filter(3, f.smooth, smooth), filter(3, f.edge, edge), filter(3, f.point, point);
+    filter(0, f.smooth, smooth), filter(0, f.edge, edge), filter(0, f.point, point);
   }
 }
 

@@ -70,12 +70,12 @@ float lab_curve(float t) {
 
 Vec3f opponent_from_linear(Vec3f rgb) {
   const Vec3f xyz = xyz_from_rgb * clamped(rgb);
-  return {116 * xyz.y - 16, 500 * (xyz.x - xyz.y), 200 * (xyz.y - xyz.z)};
+  return {xyz.y, xyz.x - xyz.y, xyz.y - xyz.z};
 }
 
-Vec3f hunt_lab_from_opponent(Vec3f c) {
-  const float y = (c.x + 16) / 116;
-  const Vec3f xyz = xyz_from_rgb * clamped(rgb_from_xyz * Vec3f{y + c.y / 500, y, y - c.z / 200});
+Vec3f hunt_lab_from_opponent(Vec3f opponent) {
+  const float y = opponent.x;
+  const Vec3f xyz = xyz_from_rgb * clamped(rgb_from_xyz * Vec3f{y + opponent.y, y, y - opponent.z});
   const float fx = lab_curve(xyz.x), fy = lab_curve(xyz.y), fz = lab_curve(xyz.z);
   const float lightness = 116 * fy - 16;
   const float hunt = 0.01f * lightness;
