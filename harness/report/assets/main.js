@@ -1,0 +1,47 @@
+// Puts the page together.
+(() => {
+  P.columns = P.make_columns();
+  P.shown = P.points;
+  const at = (id) => document.getElementById(id);
+  const find = (names) => {   // the first of these names anywhere in the run's record
+    const search = (value) => {
+      if (value === null || typeof value !== "object") return undefined;
+      for (const name of names) if (typeof value[name] === "string" || typeof value[name] === "number") return value[name];
+      for (const [key, v] of Object.entries(value)) if (key !== "config" && key !== "scenes") {
+        const found = search(v);
+        if (found !== undefined) return found;
+      }
+      return undefined;
+    };
+    return search(P.data.run ?? {});
+  };
+
+  const machine = [find(["cpu", "cpu_model"]), find(["device_name", "device", "vulkan_device"]), find(["os"]), find(["start_time", "started"])];
+  at("machine").textContent = machine.filter(Boolean).map(String).join(" · ");
+  const order = ["ok", "unsupported", "failed", "timeout"];
+  at("counts").replaceChildren(...[...P.statuses].sort((a, b) => order.indexOf(a) - order.indexOf(b)).map((status) => P.element("li", { class: `status ${status}` },
+    P.element("span", { class: "dot" }), P.element("b", {}, String(P.points.filter((p) => p.status === status).length)), ` ${status}`)),
+  ...[[P.techniques.length, "technique"], [P.scenes.length, "scene"]].map(([n, word]) => P.element("li", {}, P.element("b", {}, String(n)), ` ${word}${n === 1 ? "" : "s"}`)));
+  if (P.data.warnings?.length)
+    at("warnings").replaceChildren(P.element("details", { class: "notice" }, P.element("summary", {}, `${P.data.warnings.length} pictures could not be shown`),
+      P.element("ul", {}, ...P.data.warnings.map((w) => P.element("li", {}, w)))));
+
+  const draw_legend = () => at("legend").replaceChildren(...P.techniques.map((technique) => P.element("button", {
+    type: "button", "aria-pressed": String(!P.filter.hidden.has(technique)), title: "Show or hide in plots and table", "data-technique": technique,
+    onclick: () => {
+      if (!P.filter.hidden.delete(technique)) P.filter.hidden.add(technique);
+      P.filter_changed();
+      at("legend").querySelector(`[data-technique="${CSS.escape(technique)}"]`)?.focus();
+    } }, P.marker_icon(technique), P.technique_label(technique))));
+  draw_legend();
+  P.on_filter(draw_legend);
+  P.on_scheme_change(() => { draw_legend(); P.build_glance(at("glance-table")); });
+
+  P.build_glance(at("glance-table"));
+  P.build_viewer(at("viewer"));
+  P.build_plots(at("plot-cards"));
+  P.build_table(at("table"));
+  P.build_scenes(at("scene-report"));
+  P.build_provenance(at("provenance-report"));
+  P.build_details();
+})();

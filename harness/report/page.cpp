@@ -1,0 +1,73 @@
+#include "report/page.h"
+
+#include <cassert>
+#include <nlohmann/json.hpp>
+
+#include "report/assets.h"
+
+namespace penumbra {
+namespace {
+
+constexpr std::string_view generator = "<meta name=\"generator\" content=\"penumbra report\">";
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+std::string_view report_asset(std::string_view name) {
+  for (const Asset& asset : report_assets())
+    if (asset.name == name) return asset.content;
+  assert(!"no such asset");
+  return {};
+}
+
+std::string escape_html(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&': escaped += "&amp;"; break;
+      case '<': escaped += "&lt;"; break;
+      case '>': escaped += "&gt;"; break;
+      case '"': escaped += "&quot;"; break;
+      case '\'': escaped += "&#39;"; break;
+      default: escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string script_literal(const nlohmann::json& value) {
+  std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+  replace_all(text, "<", "\\u003c");   // '<' occurs in JSON only within strings
+  return text;
+}
+
+std::string index_html(std::string_view title) {
+  std::string page(report_asset("template.html"));
+  assert(is_report_page(page));
+  replace_all(page, "{{title}}", escape_html(title));
+  return page;
+}
+
+std::string report_script() {
+  std::string script = "\"use strict\";\n";
+  for (const char* name : {"model.js", "format.js", "filter.js", "svg.js", "chart.js", "plots.js", "table.js", "error_map.js",
+                           "zoom.js", "viewer.js", "details.js", "scenes.js", "main.js"})
+    script += report_asset(name);
+  return script;
+}
+
+std::string report_style() { return std::string(report_asset("report.css")); }
+
+std::string data_script(const nlohmann::json& data) {
+  const nlohmann::json styles = nlohmann::json::parse(report_asset("techniques.json"));
+  return "window.penumbra_styles = " + script_literal(styles) + ";\nwindow.penumbra_data = " + script_literal(data) +
+         ";\n";
+}
+
+bool is_report_page(std::string_view html) { return html.find(generator) != std::string_view::npos; }
+
+}  // namespace penumbra
