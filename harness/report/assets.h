@@ -6,7 +6,7 @@
 namespace penumbra {
 
 struct Asset {
-  std::string_view name;      // "report.css"
+  std::string_view name;  // "report.css"
   std::string_view content;
 };
 std::span<const Asset> report_assets();

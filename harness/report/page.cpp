@@ -28,12 +28,23 @@ std::string escape_html(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
     switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      case '\'': escaped += "&#39;"; break;
-      default: escaped += c;
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += c;
     }
   }
   return escaped;
@@ -41,7 +52,7 @@ std::string escape_html(std::string_view text) {
 
 std::string script_literal(const nlohmann::json& value) {
   std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-  replace_all(text, "<", "\\u003c");   // '<' occurs in JSON only within strings
+  replace_all(text, "<", "\\u003c");  // '<' occurs in JSON only within strings
   return text;
 }
 
@@ -54,8 +65,8 @@ std::string index_html(std::string_view title) {
 
 std::string report_script() {
   std::string script = "\"use strict\";\n";
-  for (const char* name : {"model.js", "format.js", "filter.js", "svg.js", "chart.js", "plots.js", "table.js", "error_map.js",
-                           "zoom.js", "viewer.js", "details.js", "scenes.js", "main.js"})
+  for (const char* name : {"model.js", "format.js", "filter.js", "svg.js", "chart.js", "plots.js", "table.js",
+                           "error_map.js", "zoom.js", "viewer.js", "details.js", "scenes.js", "main.js"})
     script += report_asset(name);
   return script;
 }
@@ -64,8 +75,8 @@ std::string report_style() { return std::string(report_asset("report.css")); }
 
 std::string data_script(const nlohmann::json& data) {
   const nlohmann::json styles = nlohmann::json::parse(report_asset("techniques.json"));
-  return "window.penumbra_styles = " + script_literal(styles) + ";\nwindow.penumbra_data = " + script_literal(data) +
-         ";\n";
+  return "window.penumbra_styles = " + script_literal(styles) +
+         ";\nwindow.penumbra_data = " + script_literal(data) + ";\n";
 }
 
 bool is_report_page(std::string_view html) { return html.find(generator) != std::string_view::npos; }

@@ -17,10 +17,11 @@ namespace {
 
 enum class Kind { copy, visibility, shaded, error };
 
-// One picture file to make. Several points share one where they name the same source, as they do for references.
+// One picture file to make. Several points share one where they name the same source, as they do for
+// references.
 struct Job {
   Kind kind = Kind::copy;
-  fs::path source, reference;   // relative to the run; `reference` for Kind::error only
+  fs::path source, reference;  // relative to the run; `reference` for Kind::error only
   std::string failure;
 };
 
@@ -44,8 +45,8 @@ Rgb8Image shaded_picture(const ExrImage& shaded) {
   return tonemap(linear, shaded.width, shaded.height);
 }
 
-// The path inside the run, or an InputError: results may come from someone else, and must not make the report pick up
-// files from outside the run.
+// The path inside the run, or an InputError: results may come from someone else, and must not make the report
+// pick up files from outside the run.
 fs::path inside_run(const std::string& name) {
   const fs::path path = fs::path(name).lexically_normal();
   if (path.empty() || path.is_absolute() || *path.begin() == "..")
@@ -79,10 +80,18 @@ void make_picture(const Job& job, const fs::path& run, const fs::path& target) {
     if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: no such file", file.string()));
   if (up_to_date(target, {source, reference})) return;
   switch (job.kind) {
-    case Kind::copy: link_or_copy(source, target); break;
-    case Kind::visibility: write_png(target, visibility_picture(read_exr(source))); break;
-    case Kind::shaded: write_png(target, shaded_picture(read_exr(source))); break;
-    case Kind::error: write_png(target, error_picture(read_exr(reference), read_exr(source))); break;
+    case Kind::copy:
+      link_or_copy(source, target);
+      break;
+    case Kind::visibility:
+      write_png(target, visibility_picture(read_exr(source)));
+      break;
+    case Kind::shaded:
+      write_png(target, shaded_picture(read_exr(source)));
+      break;
+    case Kind::error:
+      write_png(target, error_picture(read_exr(reference), read_exr(source)));
+      break;
   }
 }
 
@@ -117,13 +126,15 @@ class Planner {
       fs::path png = fs::path(source).replace_extension(".png");
       if (fs::is_regular_file(run_ / png)) source = png;
     }
-    fs::path target = fs::path("images") / (*source.begin() == "images" ? source.lexically_relative("images") : source);
+    fs::path target =
+        fs::path("images") / (*source.begin() == "images" ? source.lexically_relative("images") : source);
     target.replace_extension(".png");
     jobs_.try_emplace(target.generic_string(), Job{is_exr(source) ? exr_kind : Kind::copy, source, {}, {}});
     return target.generic_string();
   }
 
-  // Made anew from the two EXR images, because then its scale is known; the run's own picture is the fall-back.
+  // Made anew from the two EXR images, because then its scale is known; the run's own picture is the
+  // fall-back.
   void add_error(const nlohmann::json& images, nlohmann::json& pictures) {
     const auto path_of = [&](const char* name) -> fs::path {
       const auto image = images.find(name);
@@ -131,7 +142,8 @@ class Planner {
     };
     const fs::path test = path_of("visibility"), reference = path_of("reference");
     if (is_exr(test) && is_exr(reference)) {
-      fs::path target = fs::path("images") / (*test.begin() == "images" ? test.lexically_relative("images") : test);
+      fs::path target =
+          fs::path("images") / (*test.begin() == "images" ? test.lexically_relative("images") : test);
       target.replace_filename(target.stem().string() + "_error.png");
       jobs_.try_emplace(target.generic_string(), Job{Kind::error, test, reference, {}});
       pictures["error_code"] = target.generic_string();
@@ -214,8 +226,10 @@ nlohmann::json write_pictures(const fs::path& run, const fs::path& out, const nl
   run_jobs(jobs, run, out);
   files = 0;
   for (const auto& [target, job] : jobs) {
-    if (job.failure.empty()) ++files;
-    else warnings.push_back(job.failure);
+    if (job.failure.empty())
+      ++files;
+    else
+      warnings.push_back(job.failure);
   }
   for (nlohmann::json& pictures : by_point)
     for (auto it = pictures.begin(); it != pictures.end();)

@@ -11,8 +11,9 @@
 
 namespace penumbra {
 
-// Signed error as one byte: 128 is none, and the distance from it is the square root of |e|, so that errors of a
-// single light sample among a thousand are still told apart. The page decodes it with whatever range is asked for.
+// Signed error as one byte: 128 is none, and the distance from it is the square root of |e|, so that errors
+// of a single light sample among a thousand are still told apart. The page decodes it with whatever range is
+// asked for.
 uint8_t encode_signed_error(float error);
 float decode_signed_error(uint8_t code);
 
@@ -22,8 +23,9 @@ Rgb8Image visibility_picture(const ExrImage& visibility);
 Rgb8Image error_picture(const ExrImage& reference, const ExrImage& test);
 
 // Writes out/images/... for every point that names images. Returns, in points' order, one object
-// { "visibility", "shaded", "error", "reference", "reference_shaded": path relative to `out` } per point, each key only where there is
-// such a picture; "error_code" in place of "error" where the error is encoded as above.
+// { "visibility", "shaded", "error", "reference", "reference_shaded": path relative to `out` } per point,
+// each key only where there is such a picture; "error_code" in place of "error" where the error is encoded as
+// above.
 nlohmann::json write_pictures(const std::filesystem::path& run, const std::filesystem::path& out,
                               const nlohmann::json& points, std::size_t& files,
                               std::vector<std::string>& warnings);

@@ -52,7 +52,8 @@ nlohmann::json read_journal(const fs::path& path) {
   for (int number = 1; std::getline(in, line); ++number) {
     if (line.empty()) continue;
     nlohmann::json point = nlohmann::json::parse(line, nullptr, false);
-    if (!point.is_discarded()) points.push_back(std::move(point));
+    if (!point.is_discarded())
+      points.push_back(std::move(point));
     else if (in.peek() != std::ifstream::traits_type::eof())
       throw InputError(fmt::format("{}:{}: not JSON", path.string(), number));
   }
@@ -63,11 +64,16 @@ nlohmann::json read_results(const fs::path& run) {
   if (!fs::is_directory(run)) throw InputError(fmt::format("{}: no such folder of results", run.string()));
   if (fs::exists(run / "results.json")) return parse_file(run / "results.json");
   if (!fs::exists(run / "run.json"))
-    throw InputError(fmt::format("{}: holds neither results.json nor run.json; expected a folder that 'penumbra run' "
-                                 "has written", run.string()));
+    throw InputError(
+        fmt::format("{}: holds neither results.json nor run.json; expected a folder that 'penumbra run' "
+                    "has written",
+                    run.string()));
   nlohmann::json header = parse_file(run / "run.json");
-  const nlohmann::json version = header.is_object() ? header.value("schema_version", nlohmann::json()) : nlohmann::json();
-  return {{"schema_version", version}, {"run", std::move(header)}, {"points", read_journal(run / "points.jsonl")}};
+  const nlohmann::json version =
+      header.is_object() ? header.value("schema_version", nlohmann::json()) : nlohmann::json();
+  return {{"schema_version", version},
+          {"run", std::move(header)},
+          {"points", read_journal(run / "points.jsonl")}};
 }
 
 void check_point(const nlohmann::json& point, std::size_t index, const fs::path& run) {
@@ -76,13 +82,15 @@ void check_point(const nlohmann::json& point, std::size_t index, const fs::path&
   };
   if (!point.is_object()) fail(fmt::format(": found {}, expected an object", point.type_name()));
   for (const char* key : {"technique", "scene", "status"})
-    if (!point.contains(key) || !point[key].is_string()) fail(fmt::format("/{}: missing, or not a string", key));
+    if (!point.contains(key) || !point[key].is_string())
+      fail(fmt::format("/{}: missing, or not a string", key));
   if (!point.contains("params") || !point["params"].is_object()) fail("/params: missing, or not an object");
 }
 
 void check_results(const nlohmann::json& results, const fs::path& run) {
   const std::string file = (run / "results.json").string();
-  if (!results.is_object()) throw InputError(fmt::format("{}: found {}, expected an object", file, results.type_name()));
+  if (!results.is_object())
+    throw InputError(fmt::format("{}: found {}, expected an object", file, results.type_name()));
   const auto version = results.find("schema_version");
   if (version == results.end() || *version != known_schema_version)
     throw InputError(fmt::format("{}: /schema_version: found {}, expected {}", file,
@@ -96,7 +104,8 @@ void check_results(const nlohmann::json& results, const fs::path& run) {
 std::string run_name(const nlohmann::json& run, const fs::path& folder) {
   for (const char* at : {"/config/name", "/name"}) {
     const nlohmann::json::json_pointer pointer(at);
-    if (run.is_object() && run.contains(pointer) && run[pointer].is_string()) return run[pointer].get<std::string>();
+    if (run.is_object() && run.contains(pointer) && run[pointer].is_string())
+      return run[pointer].get<std::string>();
   }
   return fs::absolute(folder).lexically_normal().filename().string();
 }
@@ -104,7 +113,8 @@ std::string run_name(const nlohmann::json& run, const fs::path& folder) {
 void make_folder(const fs::path& out) {
   const fs::path index = out / "index.html";
   if (fs::exists(index) && !is_report_page(read_text(index)))
-    throw InputError(fmt::format("{}: exists and is not a report; choose another folder with -o", index.string()));
+    throw InputError(
+        fmt::format("{}: exists and is not a report; choose another folder with -o", index.string()));
   std::error_code e;
   fs::create_directories(out / "assets", e);
   if (!e) fs::create_directories(out / "images", e);

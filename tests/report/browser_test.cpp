@@ -1,4 +1,5 @@
-// The page in a real browser, opened from disk: headless Chromium drives it with selftest.js and hands back the document.
+// The page in a real browser, opened from disk: headless Chromium drives it with selftest.js and hands back
+// the document.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -21,7 +22,8 @@ using test::ScratchFolder;
 
 std::string browser() {
   if (const char* named = std::getenv("CHROMIUM")) return named;
-  for (const char* name : {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/snap/bin/chromium", "/usr/bin/google-chrome"})
+  for (const char* name :
+       {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/snap/bin/chromium", "/usr/bin/google-chrome"})
     if (fs::exists(name)) return name;
   return {};
 }
@@ -30,17 +32,21 @@ std::string browser() {
 std::string dump_document(const fs::path& page, const fs::path& profile) {
   const std::string program = browser();
   if (program.empty()) {
-    ADD_FAILURE() << "no Chromium: install the package `chromium` (see scripts/packages), or name one in $CHROMIUM";
+    ADD_FAILURE()
+        << "no Chromium: install the package `chromium` (see scripts/packages), or name one in $CHROMIUM";
     return {};
   }
-  const std::string command = "timeout 120 " + program +
-      " --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking --disable-component-update"
-      " --disable-sync --disable-dev-shm-usage --virtual-time-budget=30000 --user-data-dir='" + profile.string() +
-      "' --dump-dom 'file://" + page.string() + "' 2>'" + profile.string() + ".log'";
+  const std::string command =
+      "timeout 120 " + program +
+      " --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
+      "--disable-component-update"
+      " --disable-sync --disable-dev-shm-usage --virtual-time-budget=30000 --user-data-dir='" +
+      profile.string() + "' --dump-dom 'file://" + page.string() + "' 2>'" + profile.string() + ".log'";
   std::FILE* pipe = popen(command.c_str(), "r");
   std::string document;
   std::array<char, 65536> buffer;
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe)) document.append(buffer.data(), n);
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    document.append(buffer.data(), n);
   const int status = pclose(pipe);
   EXPECT_EQ(WEXITSTATUS(status), 0) << command << "\n" << read_file(profile.string() + ".log");
   return document;
@@ -49,8 +55,11 @@ std::string dump_document(const fs::path& page, const fs::path& profile) {
 // A copy of the report's page that runs selftest.js after the page's own scripts.
 void add_selftest(const fs::path& report) {
   std::string page = read_file(report / "index.html");
-  const std::string errors = "<script>window.page_errors = []; addEventListener('error', (e) => page_errors.push(String(e.message || "
-      "(e.target.src + ' was not loaded'))), true); addEventListener('unhandledrejection', (e) => page_errors.push(String(e.reason)));"
+  const std::string errors =
+      "<script>window.page_errors = []; addEventListener('error', (e) => page_errors.push(String(e.message "
+      "|| "
+      "(e.target.src + ' was not loaded'))), true); addEventListener('unhandledrejection', (e) => "
+      "page_errors.push(String(e.reason)));"
       "</script>";
   page.insert(page.find("<meta"), errors);
   page.insert(page.find("</head>"), "<script defer src=\"selftest.js\"></script>");

@@ -32,17 +32,22 @@ TEST(Plot, WritesEachSceneAndAxisAsPdfAndSvgAndTheSameBytesAgain) {
   ScratchFolder scratch;
   test::write_synthetic_run(scratch / "run", {16, 12, false});
   ASSERT_EQ(plot(scratch, "'" + (scratch / "run").string() + "'"), 0) << read_file(scratch / "log");
-  ASSERT_EQ(plot(scratch, "'" + (scratch / "run").string() + "' -o '" + (scratch / "again").string() + "'"), 0);
+  ASSERT_EQ(plot(scratch, "'" + (scratch / "run").string() + "' -o '" + (scratch / "again").string() + "'"),
+            0);
   const auto files = files_of(scratch / "run" / "plots");
-  for (const char* name : {"time-ball-mask_size", "error-ball-mask_size", "time-ball-map_size", "time-ball-assignment", "pareto-ball"}) {
+  for (const char* name : {"time-ball-mask_size", "error-ball-mask_size", "time-ball-map_size",
+                           "time-ball-assignment", "pareto-ball"}) {
     ASSERT_TRUE(files.contains(std::string(name) + ".pdf")) << name;
     EXPECT_EQ(files.at(std::string(name) + ".pdf").substr(0, 5), "%PDF-");
     EXPECT_NE(files.at(std::string(name) + ".svg").find("<svg"), std::string::npos);
   }
   EXPECT_TRUE(files == files_of(scratch / "again")) << "two runs of scripts/plot gave different bytes";
   // The other scene has a name full of markup: its files have names without it.
-  EXPECT_EQ(std::count_if(files.begin(), files.end(), [](const auto& f) { return f.first.starts_with("pareto-"); }), 4);
-  for (const auto& [name, content] : files) EXPECT_EQ(name.find_first_of("<>&\"'/ "), std::string::npos) << name;
+  EXPECT_EQ(
+      std::count_if(files.begin(), files.end(), [](const auto& f) { return f.first.starts_with("pareto-"); }),
+      4);
+  for (const auto& [name, content] : files)
+    EXPECT_EQ(name.find_first_of("<>&\"'/ "), std::string::npos) << name;
 }
 
 TEST(Plot, RefusesWhatIsNoResults) {
@@ -61,7 +66,8 @@ TEST(Plot, SaysWhenItsFolderCannotBeWritten) {
   ScratchFolder scratch;
   test::write_synthetic_run(scratch / "run", {16, 12, false});
   std::ofstream(scratch / "file") << "x";
-  EXPECT_EQ(plot(scratch, "'" + (scratch / "run").string() + "' -o '" + (scratch / "file").string() + "'"), 4);
+  EXPECT_EQ(plot(scratch, "'" + (scratch / "run").string() + "' -o '" + (scratch / "file").string() + "'"),
+            4);
 }
 
 }  // namespace

@@ -82,7 +82,8 @@ TEST(Report, HoldsEveryPointAndEveryPicture) {
   for (std::size_t i = 0; i < data["pictures"].size(); ++i) {
     if (results["points"][i]["status"] != "ok") continue;
     for (const char* name : {"visibility", "shaded", "error_code", "reference", "reference_shaded"}) {
-      const Rgb8Image picture = read_png(scratch / "run" / "report" / data["pictures"][i].at(name).get<std::string>());
+      const Rgb8Image picture =
+          read_png(scratch / "run" / "report" / data["pictures"][i].at(name).get<std::string>());
       EXPECT_EQ(picture.width, 160);
       EXPECT_EQ(picture.height, 120);
       ++shown;
@@ -112,8 +113,10 @@ TEST(Report, NamesNoAddressOfANetwork) {
     std::string text = read_file(scratch / "run" / "report" / file);
     // A name of the XML vocabulary, which no browser fetches.
     const std::string svg = "http://www.w3.org/2000/svg";
-    for (std::size_t at = text.find(svg); at != std::string::npos; at = text.find(svg)) text.erase(at, svg.size());
-    for (const char* address : {"http:", "https:", "//cdn", "@import", "fetch(", "import(", "type=\"module\""})
+    for (std::size_t at = text.find(svg); at != std::string::npos; at = text.find(svg))
+      text.erase(at, svg.size());
+    for (const char* address :
+         {"http:", "https:", "//cdn", "@import", "fetch(", "import(", "type=\"module\""})
       EXPECT_EQ(text.find(address), std::string::npos) << file << " has " << address;
   }
 }
@@ -138,7 +141,8 @@ TEST(Report, ReadsTheJournalOfARunThatHasNotEnded) {
   const json results = test::write_synthetic_run(scratch / "run", {16, 12, false});
   fs::remove(scratch / "run" / "results.json");
   write_text(scratch / "run" / "run.json", results["run"].dump());
-  write_text(scratch / "run" / "points.jsonl", results["points"][0].dump() + "\n" + results["points"][1].dump() + "\n{\"id\": \"to");
+  write_text(scratch / "run" / "points.jsonl",
+             results["points"][0].dump() + "\n" + results["points"][1].dump() + "\n{\"id\": \"to");
   EXPECT_EQ(write_report(scratch / "run", {}).points, 2u);
   write_text(scratch / "run" / "points.jsonl", "{\"id\": \"to\n" + results["points"][1].dump() + "\n");
   EXPECT_NE(message_of(scratch / "run").find("points.jsonl:1"), std::string::npos);

@@ -14,7 +14,8 @@ class ScratchFolder {
  public:
   ScratchFolder() {
     const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() / ("penumbra-report-" + std::string(info->name()) + "-" + std::to_string(getpid()));
+    path_ = std::filesystem::temp_directory_path() /
+            ("penumbra-report-" + std::string(info->name()) + "-" + std::to_string(getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

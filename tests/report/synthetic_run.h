@@ -1,5 +1,5 @@
-// A folder of results as `penumbra run` leaves it, made without running anything: spheres over a plane under a square
-// light, whose visibility is computed here by sampling. For tests of what reads results.
+// A folder of results as `penumbra run` leaves it, made without running anything: spheres over a plane under
+// a square light, whose visibility is computed here by sampling. For tests of what reads results.
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
