@@ -40,20 +40,24 @@ Mesh make_hair_ball(const GeneratorValues& v) {
   return m;
 }
 
-// One twig: an arc of the bowl, tilted out of its circle, with a bend of its own.
+// One twig: an arc of the bowl, a paraboloid, tilted out of its circle and with a bend of its own.
 std::vector<Vec3d> twig(Pcg32& random, double radius, double height, int segments) {
-  const double at = random.uniform(0, 2 * pi), level = random.uniform(0, 1);
-  const double depth = random.uniform(0.85, 1.15);  // how far in or out of the wall
-  const double arc = random.uniform(0.5, 1.4), tilt = random.uniform(-0.35, 0.35);
-  const double straighten = random.uniform(0, 0.25), kink = random.uniform(-0.04, 0.04);
-  const double phase = random.uniform(0, 2 * pi);
-  const double wall = radius * (0.55 + 0.45 * std::sqrt(level)) * depth;
+  const double at = random.uniform(0, 2 * pi), out = 0.12 + 0.88 * std::sqrt(random.uniform(0, 1));
+  const double wall = radius * out * random.uniform(0.9, 1.1);
+  // Of about one length everywhere, so that twigs near the middle cross it.
+  const double length = radius * random.uniform(0.5, 1.3), curl = random.uniform(0.6, 1);
+  const double tilt = random.uniform(-0.35, 0.35) * out, kink = random.uniform(-0.03, 0.03);
+  const double phase = random.uniform(0, 2 * pi),
+               level = height * out * out + radius * random.uniform(0, 0.06);
+  const Vec3d center{wall * std::cos(at), 0, wall * std::sin(at)}, along{-std::sin(at), 0, std::cos(at)};
   std::vector<Vec3d> line;
   for (int s = 0; s <= segments; ++s) {
-    const double u = double(s) / segments - 0.5, a = at + arc * u;
-    const double r = wall + radius * (straighten * u * u + kink * std::sin(9 * u + phase));
-    const double y = height * level + radius * (tilt * u + kink * std::cos(7 * u + phase));
-    line.push_back({r * std::cos(a), y, r * std::sin(a)});
+    const double u = double(s) / segments - 0.5, way = length * u;
+    // Between a chord and the bowl's circle, by `curl`.
+    const double sag = curl * out * way * way / (2 * wall) * (wall > length / 2 ? 1 : 0.5);
+    const Vec3d inward = center * (-sag / wall);
+    line.push_back(center + along * way + inward + along * (radius * kink * std::sin(9 * u + phase)) +
+                   Vec3d{0, level + radius * (tilt * u + kink * std::cos(7 * u + phase)), 0});
   }
   return line;
 }
@@ -69,7 +73,7 @@ Mesh make_bird_nest(const GeneratorValues& v) {
   const double egg = radius * 0.2;
   for (int i = 0; i < eggs; ++i) {
     const double a = 2 * pi * i / eggs + 0.4, r = eggs > 1 ? egg * 1.15 : 0;
-    add_ellipsoid(m, {r * std::cos(a), height * 0.25 + egg, r * std::sin(a)},
+    add_ellipsoid(m, {r * std::cos(a), egg * 1.1 + radius * 0.08, r * std::sin(a)},
                   {egg * 0.85, egg * 1.1, egg * 0.85}, v.integer("egg_columns"), v.integer("egg_rows"));
   }
   return m;

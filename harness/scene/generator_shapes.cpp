@@ -14,7 +14,7 @@ using std::numbers::pi;
 Mesh make_plane(const GeneratorValues& v) {
   Mesh m;
   const double sx = v.number("size_x"), sz = v.number("size_z");
-  add_sheet(m, {-sx / 2, 0, sz / 2}, {sx, 0, 0}, {0, 0, -sz}, v.integer("columns"), v.integer("rows"));
+  add_sheet(m, {-sx / 2, 0, -sz / 2}, {0, 0, sz}, {sx, 0, 0}, v.integer("rows"), v.integer("columns"));
   return m;
 }
 
@@ -98,7 +98,7 @@ Mesh make_columns(const GeneratorValues& v) {
                  v.number("radius"), v.number("height"), sides);
   const int fx = v.integer("floor_columns"), fz = v.integer("floor_rows");
   const double sx = (columns + 1) * spacing, sz = (rows + 1) * spacing;
-  if (fx > 0 && fz > 0) add_sheet(m, {-sx / 2, 0, sz / 2}, {sx, 0, 0}, {0, 0, -sz}, fx, fz);
+  if (fx > 0 && fz > 0) add_sheet(m, {-sx / 2, 0, -sz / 2}, {0, 0, sz}, {sx, 0, 0}, fz, fx);
   return m;
 }
 

@@ -45,12 +45,12 @@ void add_box(Mesh& out, Vec3d lo, Vec3d hi) {
   const auto corner = [&](int i) {
     return Vec3d{i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z};
   };
-  face(corner(0), corner(2), corner(3), corner(1), {0, 0, -1});
-  face(corner(4), corner(5), corner(7), corner(6), {0, 0, 1});
-  face(corner(0), corner(1), corner(5), corner(4), {0, -1, 0});
-  face(corner(2), corner(6), corner(7), corner(3), {0, 1, 0});
-  face(corner(0), corner(4), corner(6), corner(2), {-1, 0, 0});
-  face(corner(1), corner(3), corner(7), corner(5), {1, 0, 0});
+  face(corner(2), corner(3), corner(1), corner(0), {0, 0, -1});
+  face(corner(5), corner(7), corner(6), corner(4), {0, 0, 1});
+  face(corner(1), corner(5), corner(4), corner(0), {0, -1, 0});
+  face(corner(6), corner(7), corner(3), corner(2), {0, 1, 0});
+  face(corner(4), corner(6), corner(2), corner(0), {-1, 0, 0});
+  face(corner(3), corner(7), corner(5), corner(1), {1, 0, 0});
 }
 
 void add_ellipsoid(Mesh& out, Vec3d center, Vec3d radii, int columns, int rows) {
