@@ -1,4 +1,5 @@
-// From a sweep config to the list of points that it means. Pure functions: no device, no files but the config itself.
+// From a sweep config to the list of points that it means. Pure functions: no device, no files but the config
+// itself.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -19,43 +20,46 @@ struct MeasureSettings {
 
 // Everything that determines one result.
 struct Point {
-  std::string id;                        // 16 hex digits of the hash of all that follows
+  std::string id;  // 16 hex digits of the hash of all that follows
   std::string technique;
-  ParamValues params;                    // resolved: every parameter of the technique, grid_size included if it has it
-  std::string scene;                     // name or path as given
-  std::string light, camera;             // resolved names
+  ParamValues params;         // resolved: every parameter of the technique, grid_size included if it has it
+  std::string scene;          // name or path as given
+  std::string light, camera;  // resolved names
   int width = 512, height = 512;
-  LightSampleRequest light_samples;      // count 1 x 1 for techniques that are not sampled
+  LightSampleRequest light_samples;  // count 1 x 1 for techniques that are not sampled
   bool sampled = false;
-  double light_size = -1;                // < 0: the scene's own
+  double light_size = -1;  // < 0: the scene's own
   int frame = 0;
   uint32_t seed = 1;
-  std::string key() const;               // technique/scene/key=value,... as --filter sees it
-  std::string command() const;           // the exact command line that runs this point alone
+  std::string invocation;  // not part of the id: "penumbra run CONFIG --set ...", shell-quoted
+
+  std::string key() const;      // technique/scene/key=value,... as --filter sees it; unique in a plan
+  std::string command() const;  // the exact command line that runs this point alone
 };
 
 struct Plan {
   std::string name;
-  std::vector<Point> points;             // grouped: points that share scene, camera, resolution and frame are adjacent
-  int reference_samples = 4096;          // 0: no converged reference
-  std::vector<std::string> images;       // visibility, shaded, error, mask, position, normal, triangle
+  std::vector<Point> points;  // grouped: points that share scene, camera, resolution and frame are adjacent
+  int reference_samples = 4096;     // 0: no converged reference
+  std::vector<std::string> images;  // visibility, shaded, error, mask, position, normal, triangle
   MeasureSettings measure;
   int frames = 1;
   uint32_t seed = 1;
-  std::string expanded_config;           // JSON text of the resolved config, for run.json
+  std::string expanded_config;  // JSON text of the resolved config, for run.json
 };
 
 struct PlanOptions {
-  std::vector<std::string> set;          // --set /pointer=json
-  std::string filter;                    // --filter REGEX
+  std::vector<std::string> set;  // --set /pointer=json
+  std::string filter;            // --filter REGEX
 };
 
-// Throws InputError: file, line:column, JSON pointer, what was found, what was expected, the nearest valid name.
-// `scene_search`: folders in which scene names are looked up.
+// Throws InputError: file, line:column, JSON pointer, what was found, what was expected, the nearest valid
+// name. `scene_search`: folders in which scene names are looked up.
 Plan load_plan(const std::filesystem::path& config, const PlanOptions& options, const Registry& registry,
                const std::vector<std::filesystem::path>& scene_search);
 
-// JSON Schema (draft 7) of sweep configs and of scene files, generated from the registry and the generators.
-nlohmann::json config_schema(const Registry& registry);
+// 16 for a square, [w, h] otherwise.
+nlohmann::json extent_to_json(int width, int height);
+nlohmann::json param_to_json(const ParamValue& value);
 
 }  // namespace penumbra

@@ -46,19 +46,32 @@ const std::vector<GeneratorInfo>& generators() {
   return infos;
 }
 
-Mesh generate(const std::string& generator, const std::vector<GeneratorArgument>& arguments) {
-  const Generator& g = find_generator(generator);
+namespace {
+
+// Given values over defaults, all checked.
+std::map<std::string, double> checked_values(const Generator& g, const std::vector<GeneratorArgument>& arguments) {
   std::map<std::string, double> values;
   std::vector<std::string> names;
   for (const GeneratorInfo::Param& p : g.info.params) values[p.name] = p.fallback, names.push_back(p.name);
   for (const GeneratorArgument& a : arguments) {
     if (!values.contains(a.name))
-      throw InputError(fmt::format("generator '{}' has no parameter '{}'.{}", generator, a.name,
+      throw InputError(fmt::format("generator '{}' has no parameter '{}'.{}", g.info.name, a.name,
                                    suggestion(a.name, names)));
     values[a.name] = a.value;
   }
-  for (const GeneratorInfo::Param& p : g.info.params) check_range(generator, p, values[p.name]);
-  return g.make(GeneratorValues(values));
+  for (const GeneratorInfo::Param& p : g.info.params) check_range(g.info.name, p, values[p.name]);
+  return values;
+}
+
+}  // namespace
+
+void check_arguments(const std::string& generator, const std::vector<GeneratorArgument>& arguments) {
+  (void)checked_values(find_generator(generator), arguments);
+}
+
+Mesh generate(const std::string& generator, const std::vector<GeneratorArgument>& arguments) {
+  const Generator& g = find_generator(generator);
+  return g.make(GeneratorValues(checked_values(g, arguments)));
 }
 
 }  // namespace penumbra

@@ -27,5 +27,7 @@ struct GeneratorArgument {
 };
 // Throws InputError for an unknown generator or parameter (nearest name offered) or a value out of range.
 Mesh generate(const std::string& generator, const std::vector<GeneratorArgument>& arguments);
+// The same checks without making the mesh.
+void check_arguments(const std::string& generator, const std::vector<GeneratorArgument>& arguments);
 
 }  // namespace penumbra

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "scene/generator_table.h"
 #include "scene/mesh_search.h"
+#include "scene/declaration.h"
 #include "scene/scene_file.h"
 #include "scene/scene_mesh.h"
 
@@ -40,23 +41,6 @@ struct NormalTransform {
   }
   Vec3d operator()(Vec3d n) const { return {dot(rows[0], n), dot(rows[1], n), dot(rows[2], n)}; }
 };
-
-std::string scene_path(const std::string& name_or_path, const std::vector<fs::path>& search) {
-  std::error_code error;
-  if (name_or_path.ends_with(".json") || name_or_path.find('/') != std::string::npos) {
-    if (fs::is_regular_file(name_or_path, error)) return name_or_path;
-    throw InputError(fmt::format("{}: no such scene file.", name_or_path));
-  }
-  std::vector<std::string> names;
-  for (const fs::path& folder : search) {
-    const fs::path path = folder / (name_or_path + ".json");
-    if (fs::is_regular_file(path, error)) return path.string();
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  throw InputError(fmt::format("unknown scene '{}'.{}", name_or_path, suggestion(name_or_path, names)));
-}
 
 Changes changes_since(const Frame& now, const Frame* previous) {
   Changes c;
@@ -216,7 +200,7 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 
 Scene Scene::load(const std::string& name_or_path, const std::vector<fs::path>& search) {
-  const std::string path = scene_path(name_or_path, search);
+  const std::string path = find_scene_file(name_or_path, search);
   auto impl = std::make_unique<Impl>();
   impl->file = parse_scene_file(JsonDocument::read(path));
   const std::vector<fs::path> folders = mesh_folders(path);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 namespace penumbra {
-namespace {
 
 std::string expectation(const ParamInfo& info) {
   switch (info.type) {
@@ -16,6 +15,8 @@ std::string expectation(const ParamInfo& info) {
   }
   return "";
 }
+
+namespace {
 
 [[noreturn]] void reject(const ParamInfo& info, const ParamValue& value) {
   std::string message = fmt::format("parameter '{}' is {}, expected {}.", info.name, to_text(value), expectation(info));

@@ -29,6 +29,8 @@ struct ParamInfo {
 };
 
 std::string to_text(const ParamValue& value);
+// "an integer from 1 to 256", "one of a, b": the middle of an error message.
+std::string expectation(const ParamInfo& info);
 // The value as `info` types it (an integer is a number too); throws InputError saying what was expected.
 ParamValue checked(const ParamInfo& info, const ParamValue& value);
 // Defaults filled in, values checked, unknown names rejected with the nearest valid one. `where` opens the message.

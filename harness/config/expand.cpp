@@ -1,0 +1,234 @@
+#include "config/expand.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <regex>
+#include <unordered_set>
+
+namespace penumbra {
+namespace {
+
+// The axes of one scene: the sweep's values, the scene's own where the sweep has none, the general default
+// else.
+struct SceneAxes {
+  std::vector<const Light*> lights;
+  std::vector<std::string> cameras;
+  std::vector<Extent> resolutions;
+  std::vector<SampleCount> samples;
+  std::vector<LightPattern> patterns;
+  std::vector<double> light_sizes;
+};
+
+JsonNode default_node(const SceneDeclaration& scene, const std::string& axis) {
+  return JsonDocument::parse(scene.axis_defaults.at(axis),
+                             scene.file.string() + " (defaults of " + axis + ")")
+      .root();
+}
+
+template <class T, class Reader>
+std::vector<T> values_or_default(const std::vector<T>& values, const SceneDeclaration& scene,
+                                 const std::string& axis, Reader read, T fallback) {
+  if (!values.empty()) return values;
+  if (!scene.axis_defaults.contains(axis)) return {fallback};
+  return {read(default_node(scene, axis))};
+}
+
+std::vector<SampleCount> sample_counts(const Sweep& sweep, const SceneDeclaration& scene) {
+  if (sweep.samples.empty() && !scene.axis_defaults.contains("mask_size") &&
+      scene.axis_defaults.contains("light_samples"))
+    return {read_light_samples(default_node(scene, "light_samples"))};
+  return values_or_default(sweep.samples, scene, "mask_size", read_mask_size, SampleCount{});
+}
+
+std::vector<const Light*> chosen_lights(const Sweep& sweep, const SceneDeclaration& scene) {
+  std::vector<std::string> names;
+  for (const Light& light : scene.lights) names.push_back(light.name);
+  if (sweep.lights.empty()) return {&scene.lights.front()};
+  std::vector<const Light*> lights;
+  for (const NamedValue& wanted : sweep.lights) {
+    const auto it = std::ranges::find(names, wanted.name);
+    if (it == names.end())
+      wanted.node.fail(fmt::format("a light of the scene '{}'", scene.name), suggestion(wanted.name, names));
+    lights.push_back(&scene.lights[static_cast<std::size_t>(it - names.begin())]);
+  }
+  return lights;
+}
+
+std::vector<std::string> chosen_cameras(const Sweep& sweep, const SceneDeclaration& scene) {
+  if (sweep.cameras.empty()) return {scene.cameras.front()};
+  std::vector<std::string> cameras;
+  for (const NamedValue& wanted : sweep.cameras) {
+    if (std::ranges::find(scene.cameras, wanted.name) == scene.cameras.end())
+      wanted.node.fail(fmt::format("a camera of the scene '{}'", scene.name),
+                       suggestion(wanted.name, scene.cameras));
+    cameras.push_back(wanted.name);
+  }
+  return cameras;
+}
+
+SceneAxes scene_axes(const Sweep& sweep, const SceneDeclaration& scene) {
+  return {
+      chosen_lights(sweep, scene),
+      chosen_cameras(sweep, scene),
+      values_or_default(sweep.resolutions, scene, "resolution", read_resolution, Extent{512, 512}),
+      sample_counts(sweep, scene),
+      values_or_default(sweep.patterns, scene, "light_pattern", read_light_pattern, LightPattern::regular),
+      values_or_default(sweep.light_sizes, scene, "light_size", read_light_size, -1.0)};
+}
+
+// Every combination of an entry's parameters: its own values, then the sweep's axes, the scene's defaults,
+// the technique's. The last parameter varies fastest.
+std::vector<ParamValues> combinations(const Sweep& sweep, const SweepEntry& entry,
+                                      const SceneDeclaration& scene) {
+  std::vector<ParamValues> out{{}};
+  for (const ParamInfo& info : entry.info->params) {
+    std::vector<ParamValue> values{info.fallback};
+    if (const auto own = entry.params.find(info.name); own != entry.params.end())
+      values = own->second;
+    else if (const auto axis = sweep.axes.find(info.name); axis != sweep.axes.end())
+      values = axis->second;
+    else if (scene.axis_defaults.contains(info.name))
+      values = {read_param(default_node(scene, info.name), info)};
+    std::vector<ParamValues> longer;
+    if (static_cast<int64_t>(out.size() * values.size()) > limits::points)
+      throw InputError(fmt::format("the parameters of {} make more than {} combinations.", entry.info->name,
+                                   limits::points));
+    for (const ParamValues& given : out)
+      for (const ParamValue& value : values) {
+        longer.push_back(given);
+        longer.back()[info.name] = value;
+      }
+    out = std::move(longer);
+  }
+  return out;
+}
+
+bool has_size(const Light& light) {
+  return light.kind == LightKind::rectangle || light.kind == LightKind::sphere ||
+         light.kind == LightKind::textured_rectangle;
+}
+
+// Axes that make no difference take one value, so that their copies become duplicates.
+void drop_idle_axes(Point& point, const Light& light) {
+  if (!has_size(light)) point.light_size = -1;
+  const float size = point.light_size < 0 ? light.size() : static_cast<float>(point.light_size);
+  const bool one_sample = !light.is_area() || (has_size(light) && size == 0);
+  if (point.sampled && !one_sample) {
+    if (point.light_samples.count > 0) point.light_samples.width = point.light_samples.height = 1;
+    return;
+  }
+  point.light_samples.width = point.light_samples.height = 1;
+  point.light_samples.count = 0;
+  point.light_samples.pattern = LightPattern::regular;
+}
+
+class Expansion {
+ public:
+  Expansion(const Sweep& sweep, const DeclareScene& declare) : sweep_(sweep), declare_(declare) {}
+
+  std::vector<Point> run() {
+    for (const NamedValue& scene : sweep_.scenes) {
+      const SceneDeclaration declaration = declared(scene);
+      expand_scene(scene.name, declaration);
+    }
+    return std::move(points_);
+  }
+
+ private:
+  // Errors about a scene's name are told where the name stands; those about its file name the file.
+  SceneDeclaration declared(const NamedValue& scene) const {
+    try {
+      return declare_(scene.name);
+    } catch (const InputError& e) {
+      scene.node.complain(e.what());
+    }
+  }
+
+  void expand_scene(const std::string& name, const SceneDeclaration& scene) {
+    const SceneAxes axes = scene_axes(sweep_, scene);
+    std::vector<std::vector<ParamValues>> params;
+    for (const SweepEntry& entry : sweep_.entries) params.push_back(combinations(sweep_, entry, scene));
+    check_count(axes, params);
+    Point p;
+    p.scene = name;
+    p.seed = sweep_.seed;
+    for (const std::string& camera : axes.cameras)
+      for (const Extent& resolution : axes.resolutions)
+        for (int frame = 0; frame < sweep_.frames; ++frame) {
+          p.camera = camera, p.width = resolution.width, p.height = resolution.height, p.frame = frame;
+          expand_light(p, axes, params);
+        }
+  }
+
+  void expand_light(Point p, const SceneAxes& axes, const std::vector<std::vector<ParamValues>>& params) {
+    for (const Light* light : axes.lights)
+      for (const double size : axes.light_sizes)
+        for (const SampleCount& samples : axes.samples)
+          for (const LightPattern pattern : axes.patterns) {
+            p.light = light->name, p.light_size = size;
+            p.light_samples = {samples.width, samples.height, samples.count, pattern, sweep_.seed};
+            expand_techniques(p, *light, params);
+          }
+  }
+
+  void expand_techniques(const Point& like, const Light& light,
+                         const std::vector<std::vector<ParamValues>>& params) {
+    for (std::size_t i = 0; i < sweep_.entries.size(); ++i)
+      for (const ParamValues& values : params[i]) {
+        Point p = like;
+        p.technique = sweep_.entries[i].info->name;
+        p.sampled = sweep_.entries[i].info->sampled;
+        p.params = values;
+        drop_idle_axes(p, light);
+        p.id = point_id(p);
+        if (seen_.insert(p.id).second) points_.push_back(std::move(p));
+      }
+  }
+
+  void check_count(const SceneAxes& axes, const std::vector<std::vector<ParamValues>>& params) {
+    double count = 0;
+    for (const auto& list : params) count += static_cast<double>(list.size());
+    count *= sweep_.frames;
+    for (const std::size_t n : {axes.lights.size(), axes.cameras.size(), axes.resolutions.size(),
+                                axes.samples.size(), axes.patterns.size(), axes.light_sizes.size()})
+      count *= static_cast<double>(n);
+    bound_ += count;
+    if (bound_ > static_cast<double>(limits::points))
+      throw InputError(fmt::format("{}: the sweep expands to {:.0f} points or more, expected at most {}.",
+                                   sweep_.scenes.front().node.location(), bound_, limits::points));
+  }
+
+  const Sweep& sweep_;
+  const DeclareScene& declare_;
+  std::vector<Point> points_;
+  std::unordered_set<std::string> seen_;
+  double bound_ = 0;
+};
+
+}  // namespace
+
+std::vector<Point> expand(const Sweep& sweep, const DeclareScene& declare) {
+  return Expansion(sweep, declare).run();
+}
+
+std::vector<Point> filter_points(std::vector<Point> points, const std::string& regex) {
+  if (regex.empty()) return points;
+  std::regex expression;
+  try {
+    expression.assign(regex, std::regex::ECMAScript);
+  } catch (const std::regex_error& e) {
+    throw InputError(fmt::format(
+        "--filter '{}': found no regular expression ({}), expected one such as 'gears/.*mask_size=16'.",
+        regex, e.what()));
+  }
+  std::vector<Point> kept;
+  for (const Point& p : points)
+    if (std::regex_search(p.key(), expression)) kept.push_back(p);
+  if (kept.empty())
+    throw InputError(fmt::format("--filter '{}': found no match among {} points, expected one such as '{}'.",
+                                 regex, points.size(), points.empty() ? "" : points.front().key()));
+  return kept;
+}
+
+}  // namespace penumbra
