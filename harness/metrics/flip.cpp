@@ -1,238 +1,200 @@
 // LDR-FLIP [Andersson 2020]. Two pipelines: what the eye still sees of the colours at a given number of
-// pixels per degree (sections 4.1.x), and edges and points (section 4.2), which raise the colour difference
-// where they differ. All filters are sums of separable ones; every pixel is computed on its own, so bands of
-// rows may run in any order.
+// pixels per degree (section 4.1), and edges and points (section 4.2), which raise the colour difference
+// where they differ. The image is cut into tiles: what they need stays in the cache, a tile whose
+// surroundings are equal in both images is known to be 0, and as every pixel is computed on its own, tiles
+// may run in any order.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <vector>
 
 #include "core/parallel.h"
 #include "metrics/checks.h"
 #include "metrics/flip_color.h"
+#include "metrics/flip_filters.h"
 #include "metrics/metrics.h"
 
 namespace penumbra {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using flip_filters::Filters;
+using flip_filters::Kernel;
 
-// Section 4.1.3 and 4.2.2: exponents and the two numbers that stretch small differences.
-constexpr double q_c = 0.7, p_c = 0.4, p_t = 0.95, q_f = 0.5;
-// Width of the feature detectors in degrees (section 4.2.1).
-constexpr double feature_width = 0.082;
+// Section 4.1.3: the exponent, and the two numbers that stretch small differences.
+constexpr float q_c = 0.7f, p_c = 0.4f, p_t = 0.95f;
 
-// Contrast sensitivity of one opponent channel, table 1: a sqrt(pi / b) exp(-pi^2 d^2 / b), d in degrees.
-struct Gaussian {
-  double a, b;
-};
-constexpr Gaussian achromatic{1, 0.0047}, red_green{1, 0.0053},
-    blue_yellow[2] = {{34.1, 0.04}, {13.5, 0.025}};
-
-using Kernel = std::vector<float>;  // 2 radius + 1 weights
-using Row = std::vector<float>;
-
-// Weights of f at -radius ... radius, scaled so that the positive ones sum to 1, and so do the negative ones,
-// negated.
-template <class F>
-Kernel normalised_kernel(int radius, F f) {
-  double positive = 0, negative = 0;
-  for (int k = -radius; k <= radius; ++k) (f(k) > 0 ? positive : negative) += f(k);
-  Kernel kernel;
-  for (int k = -radius; k <= radius; ++k)
-    kernel.push_back(static_cast<float>(f(k) > 0 ? f(k) / positive : f(k) < 0 ? f(k) / -negative : 0));
-  return kernel;
-}
-
-struct Filters {
-  int color_radius, feature_radius;
-  Kernel y, cx, cz[2];  // contrast sensitivity
-  float cz_weight[2];   // share of each of the two Gaussians in the blue-yellow channel's filter
-  Kernel smooth, edge, point;
-};
-
-double falloff(const Gaussian& g, double d) { return std::exp(-pi * pi * d * d / g.b); }
-
-Filters make_filters(double pixels_per_degree) {
-  Filters f;
-  const double step = 1 / pixels_per_degree;
-  // Three standard deviations of the widest Gaussian, whose b is 2 pi^2 sigma^2; the same window for all
-  // channels.
-  f.color_radius =
-      static_cast<int>(std::ceil(3 * std::sqrt(blue_yellow[0].b / (2 * pi * pi)) * pixels_per_degree));
-  const auto gaussian = [&](const Gaussian& g) {
-    return normalised_kernel(f.color_radius, [&](int k) { return falloff(g, k * step); });
-  };
-  f.y = gaussian(achromatic), f.cx = gaussian(red_green);
-  double mass[2];
-  for (int i = 0; i < 2; ++i) {
-    f.cz[i] = gaussian(blue_yellow[i]);
-    double sum = 0;
-    for (int k = -f.color_radius; k <= f.color_radius; ++k) sum += falloff(blue_yellow[i], k * step);
-    mass[i] = blue_yellow[i].a * std::sqrt(pi / blue_yellow[i].b) * sum * sum;
-  }
-  for (int i = 0; i < 2; ++i) f.cz_weight[i] = static_cast<float>(mass[i] / (mass[0] + mass[1]));
-
-  const double sigma = 0.5 * feature_width * pixels_per_degree;
-  f.feature_radius = static_cast<int>(std::ceil(3 * sigma));
-  const auto bell = [&](int k) { return std::exp(-0.5 * k * k / (sigma * sigma)); };
-  f.smooth = normalised_kernel(f.feature_radius, bell);
-  f.edge = normalised_kernel(f.feature_radius, [&](int k) { return -k * bell(k); });
-  f.point =
-      normalised_kernel(f.feature_radius, [&](int k) { return (k * k / (sigma * sigma) - 1) * bell(k); });
-  return f;
-}
-
-// A band of rows of one channel, with the rows above and below that a vertical filter needs.
-struct Plane {
-  Plane(int width, int rows)
-      : width_(static_cast<std::size_t>(width)), values_(width_ * static_cast<std::size_t>(rows)) {}
-  float* row(int y) { return &values_[static_cast<std::size_t>(y) * width_]; }
-  const float* row(int y) const { return &values_[static_cast<std::size_t>(y) * width_]; }
-
- private:
-  std::size_t width_;
-  std::vector<float> values_;
-};
-
-// out = in filtered along the row, which is continued by its end pixels.
-void filter_row(const float* in, float* out, int width, const Kernel& kernel, Row& padded) {
-  const std::size_t n = static_cast<std::size_t>(width), radius = kernel.size() / 2;
-  padded.resize(n + 2 * radius);
-  std::fill_n(padded.begin(), radius, in[0]);
-  std::copy_n(in, n, padded.begin() + static_cast<std::ptrdiff_t>(radius));
-  std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(radius), radius, in[n - 1]);
-  std::fill_n(out, n, 0.0f);
-  for (std::size_t k = 0; k < kernel.size(); ++k) {
-    const float weight = kernel[k];
-    const float* shifted = padded.data() + k;
-    for (std::size_t x = 0; x < n; ++x) out[x] += weight * shifted[x];
-  }
-}
-
-// out += scale * (plane filtered along columns at `center`); rows center - radius ... center + radius exist.
-void add_column(const Plane& plane, int center, float* out, int width, const Kernel& kernel,
-                float scale = 1) {
-  const int radius = static_cast<int>(kernel.size() / 2);
-  for (int k = -radius; k <= radius; ++k) {
-    const float weight = scale * kernel[static_cast<std::size_t>(k + radius)];
-    const float* in = plane.row(center + k);
-    for (int x = 0; x < width; ++x) out[x] += weight * in[x];
-  }
-}
+constexpr int tile_width = 128, tile_height = 64;
+constexpr std::size_t tile_pixels = std::size_t{tile_width} * tile_height;
+constexpr int block = 16;  // outputs of a filter that are summed in registers
+static_assert(tile_width % block == 0);
 
 struct View {
   std::span<const Vec3f> rgb;
   int width, height;
+  const Vec3f* row(int y) const {
+    return &rgb[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)];
+  }
 };
 
-// Of one image, the rows of a band filtered horizontally. Row i is the image's row y0 - radius + i, and
-// beyond the border the border row again.
-struct Band {
-  Band(const View& image, const Filters& f, int y0, int rows);
-  int radius;
-  Plane y, cx, cz0, cz1;
-  Plane smooth, edge, point;
-};
+using Plane = std::vector<float>;
 
-Band::Band(const View& image, const Filters& f, int y0, int rows)
-    : radius(std::max(f.color_radius, f.feature_radius)),
-      y(image.width, rows + 2 * radius),
-      cx(y),
-      cz0(y),
-      cz1(y),
-      smooth(y),
-      edge(y),
-      point(y) {
-  const std::size_t n = static_cast<std::size_t>(image.width);
-  std::array<Row, 3> channel;
-  for (Row& c : channel) c.resize(n);
-  Row padded;
-  int converted = -1;
-  for (int i = 0; i < rows + 2 * radius; ++i) {
-    const int source = std::clamp(y0 - radius + i, 0, image.height - 1);
-    if (source != converted) {
-      const Vec3f* rgb = &image.rgb[static_cast<std::size_t>(source) * n];
-      for (std::size_t x = 0; x < n; ++x) {
-        const Vec3f c = flip_color::opponent_from_linear(rgb[x]);
-        channel[0][x] = c.x, channel[1][x] = c.y, channel[2][x] = c.z;
-      }
-      converted = source;
+// out[x] += the sum of weights[k] * in[x + k * step], for a tile's width.
+void add_filtered(const float* in, std::size_t step, const Kernel& kernel, float* out) {
+  for (int x = 0; x < tile_width; x += block) {
+    float sum[block] = {};
+    const float* tap = in + x;
+    for (const float weight : kernel.weights) {
+      for (int i = 0; i < block; ++i) sum[i] += weight * tap[i];
+      tap += step;
     }
-    // Features are found in the first channel as it is: (Y + 16) / 116 in the errata of [Andersson 2020] is
-    // its y.
-    const auto filter = [&](std::size_t c, const Kernel& kernel, Plane& out) {
-      filter_row(channel[c].data(), out.row(i), image.width, kernel, padded);
-    };
-    filter(0, f.y, y), filter(1, f.cx, cx), filter(2, f.cz[0], cz0), filter(2, f.cz[1], cz1);
-    filter(0, f.smooth, smooth), filter(0, f.edge, edge), filter(0, f.point, point);
+    for (int i = 0; i < block; ++i) out[x + i] += sum[i];
   }
 }
 
-// What is compared at each pixel of a row: the perceived colour (Lab with Hunt's adjustment), and the
-// strength of edges and points.
-struct Perceived {
-  explicit Perceived(int width)
-      : color(static_cast<std::size_t>(width)), edge(color.size()), point(color.size()) {}
-  std::vector<Vec3f> color;
-  Row edge, point;
+// One image's part in a tile: its filtered opponent colours, and the strength of edges and points.
+struct TileResult {
+  std::array<Plane, 3> color;
+  Plane edge, point;
 };
 
-void gradient_norm(const Plane& across, const Plane& smooth, int center, const Kernel& derivative,
-                   const Kernel& bell, Row& out, Row& dx, Row& dy) {
-  const int width = static_cast<int>(out.size());
-  dx.assign(out.size(), 0), dy.assign(out.size(), 0);
-  add_column(across, center, dx.data(), width, bell);
-  add_column(smooth, center, dy.data(), width, derivative);
-  for (std::size_t x = 0; x < out.size(); ++x) out[x] = std::sqrt(dx[x] * dx[x] + dy[x] * dy[x]);
+// Reused from tile to tile. Input rows and columns begin `radius` before the tile.
+class TileFilter {
+ public:
+  explicit TileFilter(const Filters& filters);
+  void apply(const View& image, int x0, int y0, TileResult& out);
+
+ private:
+  void convert(const View& image, int x0, int y0);
+  void filter_rows(const Plane& in, const Kernel& kernel, Plane& out) const;
+  void filter_columns(const Plane& in, const Kernel& kernel, Plane& out) const;
+  void gradient_norm(const Plane& across, const Kernel& derivative, Plane& out);
+
+  const Filters& filters_;
+  int radius_;
+  std::size_t input_width_;
+  int input_rows_;
+  std::array<Plane, 3> input_;  // opponent colours
+  Plane y_, cx_, cz_[2], smooth_, edge_, point_, dx_, dy_;
+};
+
+TileFilter::TileFilter(const Filters& filters)
+    : filters_(filters),
+      radius_(filters.radius),
+      input_width_(static_cast<std::size_t>(tile_width + 2 * radius_)),
+      input_rows_(tile_height + 2 * radius_) {
+  for (Plane& p : input_) p.resize(input_width_ * static_cast<std::size_t>(input_rows_));
 }
 
-void perceive(const Band& band, const Filters& f, int row, Perceived& out, std::array<Row, 3>& scratch) {
-  const int center = row + band.radius, width = static_cast<int>(out.color.size());
-  for (Row& r : scratch) r.assign(out.color.size(), 0);
-  add_column(band.y, center, scratch[0].data(), width, f.y);
-  add_column(band.cx, center, scratch[1].data(), width, f.cx);
-  add_column(band.cz0, center, scratch[2].data(), width, f.cz[0], f.cz_weight[0]);
-  add_column(band.cz1, center, scratch[2].data(), width, f.cz[1], f.cz_weight[1]);
-  for (std::size_t x = 0; x < out.color.size(); ++x)
-    out.color[x] = flip_color::hunt_lab_from_opponent({scratch[0][x], scratch[1][x], scratch[2][x]});
-  gradient_norm(band.edge, band.smooth, center, f.edge, f.smooth, out.edge, scratch[0], scratch[1]);
-  gradient_norm(band.point, band.smooth, center, f.point, f.smooth, out.point, scratch[0], scratch[1]);
+// Beyond its border the image is continued by its border pixels.
+void TileFilter::convert(const View& image, int x0, int y0) {
+  for (int r = 0; r < input_rows_; ++r) {
+    const Vec3f* row = image.row(std::clamp(y0 - radius_ + r, 0, image.height - 1));
+    const std::size_t start = static_cast<std::size_t>(r) * input_width_;
+    for (std::size_t c = 0; c < input_width_; ++c) {
+      const int x = std::clamp(x0 - radius_ + static_cast<int>(c), 0, image.width - 1);
+      const Vec3f color = flip_color::opponent_from_linear(row[x]);
+      for (std::size_t i = 0; i < 3; ++i) input_[i][start + c] = color[static_cast<int>(i)];
+    }
+  }
+}
+
+void TileFilter::filter_rows(const Plane& in, const Kernel& kernel, Plane& out) const {
+  out.assign(static_cast<std::size_t>(input_rows_) * tile_width, 0);
+  const std::size_t first = static_cast<std::size_t>(radius_ - kernel.radius());
+  for (std::size_t r = 0; r < static_cast<std::size_t>(input_rows_); ++r)
+    add_filtered(&in[r * input_width_ + first], 1, kernel, &out[r * tile_width]);
+}
+
+void TileFilter::filter_columns(const Plane& in, const Kernel& kernel, Plane& out) const {
+  const std::size_t first = static_cast<std::size_t>(radius_ - kernel.radius());
+  for (std::size_t r = 0; r < tile_height; ++r)
+    add_filtered(&in[(r + first) * tile_width], tile_width, kernel, &out[r * tile_width]);
+}
+
+void TileFilter::gradient_norm(const Plane& across, const Kernel& derivative, Plane& out) {
+  dx_.assign(tile_pixels, 0), dy_.assign(tile_pixels, 0), out.resize(tile_pixels);
+  filter_columns(across, filters_.smooth, dx_);
+  filter_columns(smooth_, derivative, dy_);
+  for (std::size_t i = 0; i < tile_pixels; ++i) out[i] = std::sqrt(dx_[i] * dx_[i] + dy_[i] * dy_[i]);
+}
+
+void TileFilter::apply(const View& image, int x0, int y0, TileResult& out) {
+  convert(image, x0, y0);
+  for (Plane& p : out.color) p.assign(tile_pixels, 0);
+  filter_rows(input_[0], filters_.y, y_), filter_columns(y_, filters_.y, out.color[0]);
+  filter_rows(input_[1], filters_.cx, cx_), filter_columns(cx_, filters_.cx, out.color[1]);
+  for (int i = 0; i < 2; ++i) {
+    filter_rows(input_[2], filters_.cz_horizontal[i], cz_[i]);
+    filter_columns(cz_[i], filters_.cz_vertical[i], out.color[2]);
+  }
+  // Features are found in the achromatic channel, scaled to [0, 1]: in the errata (Y + 16) / 116, our y.
+  filter_rows(input_[0], filters_.smooth, smooth_);
+  filter_rows(input_[0], filters_.edge, edge_);
+  filter_rows(input_[0], filters_.point, point_);
+  gradient_norm(edge_, filters_.edge, out.edge);
+  gradient_norm(point_, filters_.point, out.point);
 }
 
 // Section 4.1.3: the largest difference there is (green to blue) becomes 1, and p_c of it already p_t.
 float color_difference(Vec3f reference, Vec3f test) {
-  static const double largest = std::pow(
-      flip_color::hyab(flip_color::hunt_lab_from_opponent(flip_color::opponent_from_linear({0, 1, 0})),
-                       flip_color::hunt_lab_from_opponent(flip_color::opponent_from_linear({0, 0, 1}))),
-      q_c);
-  const double d = std::pow(static_cast<double>(flip_color::hyab(reference, test)), q_c),
-               knee = p_c * largest;
-  const double mapped = d < knee ? d * p_t / knee : p_t + (d - knee) / (largest - knee) * (1 - p_t);
-  return static_cast<float>(std::min(mapped, 1.0));
+  if (reference == test) return 0;
+  const auto distance = [](Vec3f a, Vec3f b) {
+    return std::pow(
+        flip_color::hyab(flip_color::hunt_lab_from_opponent(a), flip_color::hunt_lab_from_opponent(b)), q_c);
+  };
+  static const float largest =
+      distance(flip_color::opponent_from_linear({0, 1, 0}), flip_color::opponent_from_linear({0, 0, 1}));
+  static const float knee = p_c * largest;
+  const float d = distance(reference, test);
+  return d < knee ? d * (p_t / knee) : std::min(p_t + (d - knee) / (largest - knee) * (1 - p_t), 1.0f);
 }
 
-// Section 4.2.2.
-float feature_difference(float reference_edge, float test_edge, float reference_point, float test_point) {
-  const float d = std::max(std::abs(reference_edge - test_edge), std::abs(reference_point - test_point));
-  return static_cast<float>(std::pow(std::min(static_cast<double>(d) / std::numbers::sqrt2, 1.0), q_f));
+// Section 4.2.2; the exponent q_f is 1/2.
+float feature_difference(float edge_difference, float point_difference) {
+  const float d = std::max(std::abs(edge_difference), std::abs(point_difference));
+  return std::sqrt(std::min(d / std::numbers::sqrt2_v<float>, 1.0f));
 }
 
-void compare_rows(const View& reference, const View& test, const Filters& f, int begin, int end, float* map) {
-  const Band reference_band(reference, f, begin, end - begin), test_band(test, f, begin, end - begin);
-  Perceived a(reference.width), b(reference.width);
-  std::array<Row, 3> scratch;
-  for (int y = begin; y < end; ++y) {
-    perceive(reference_band, f, y - begin, a, scratch);
-    perceive(test_band, f, y - begin, b, scratch);
-    float* out = map + static_cast<std::size_t>(y) * a.color.size();
-    for (std::size_t x = 0; x < a.color.size(); ++x) {
-      const float color = color_difference(a.color[x], b.color[x]);
-      const float feature = feature_difference(a.edge[x], b.edge[x], a.point[x], b.point[x]);
-      out[x] = std::pow(color, 1 - feature);  // equation 10; 0 to the power of 0 is 1, as it must be
+void compare_tile(const TileResult& a, const TileResult& b, const View& image, int x0, int y0, float* map) {
+  for (int y = y0; y < std::min(y0 + tile_height, image.height); ++y) {
+    float* out = map + static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
+    std::size_t i = static_cast<std::size_t>(y - y0) * tile_width;
+    for (int x = x0; x < std::min(x0 + tile_width, image.width); ++x, ++i) {
+      const float color = color_difference({a.color[0][i], a.color[1][i], a.color[2][i]},
+                                           {b.color[0][i], b.color[1][i], b.color[2][i]});
+      const float feature = feature_difference(a.edge[i] - b.edge[i], a.point[i] - b.point[i]);
+      // Equation 10. No difference of colour is none at all, unless features differ as much as they can (0^0
+      // = 1).
+      out[x] = color > 0 || feature >= 1 ? std::pow(color, 1 - feature) : 0;
     }
   }
+}
+
+bool equal_around_tile(const View& a, const View& b, int x0, int y0, int radius) {
+  const int begin = std::max(0, x0 - radius), end = std::min(a.width, x0 + tile_width + radius);
+  const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof(Vec3f);
+  for (int y = std::max(0, y0 - radius); y < std::min(a.height, y0 + tile_height + radius); ++y)
+    if (std::memcmp(a.row(y) + begin, b.row(y) + begin, bytes) != 0) return false;
+  return true;
+}
+
+// `map` is zeroed.
+void compare_images(const View& reference, const View& test, const Filters& filters, float* map) {
+  const int columns = (reference.width + tile_width - 1) / tile_width;
+  const int rows = (reference.height + tile_height - 1) / tile_height;
+  parallel_for(static_cast<std::size_t>(columns * rows), 8, [&](std::size_t begin, std::size_t end) {
+    TileFilter filter(filters);
+    TileResult a, b;
+    for (int tile = static_cast<int>(begin); tile < static_cast<int>(end); ++tile) {
+      const int x0 = tile % columns * tile_width, y0 = tile / columns * tile_height;
+      if (equal_around_tile(reference, test, x0, y0, filters.radius)) continue;
+      filter.apply(reference, x0, y0, a);
+      filter.apply(test, x0, y0, b);
+      compare_tile(a, b, reference, x0, y0, map);
+    }
+  });
 }
 
 void check(const char* what, std::span<const Vec3f> image, int width, int height) {
@@ -252,13 +214,10 @@ FlipResult flip(std::span<const Vec3f> reference, std::span<const Vec3f> test, i
   check("The reference", reference, width, height);
   check("The test image", test, width, height);
 
-  const Filters filters = make_filters(pixels_per_degree);
   FlipResult result;
   result.map.resize(reference.size());
-  parallel_for(static_cast<std::size_t>(height), 64, [&](std::size_t begin, std::size_t end) {
-    compare_rows({reference, width, height}, {test, width, height}, filters, static_cast<int>(begin),
-                 static_cast<int>(end), result.map.data());
-  });
+  compare_images({reference, width, height}, {test, width, height},
+                 flip_filters::make_filters(pixels_per_degree), result.map.data());
   // In reading order: the same for any number of threads.
   double sum = 0;
   for (float v : result.map) sum += static_cast<double>(v);
