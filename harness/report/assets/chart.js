@@ -49,6 +49,8 @@
       root.append(P.svg("path", { class: "front",
         d: "M" + steps.map(([a, b], i) => (i ? `${a},${steps[i - 1][1]}L${a},${b}` : `${a},${b}`)).join("L") }));
     }
+    // Equal masks give equal errors: what lies below is drawn larger, so that it still shows round what lies on it.
+    const order = P.unique(drawn.map((s) => s.technique)), above = (s) => Math.min(3, order.length - 1 - order.indexOf(s.technique));
     for (const s of drawn) {
       const colour = P.colour(s.technique);
       const line = s.line && s.points.length > 1;
@@ -58,14 +60,14 @@
         root.append(P.svg("path", { d: `M${[...upper, ...lower].join("L")}Z`, fill: colour, class: "band" }));
       }
       if (line) root.append(P.svg("path", { d: "M" + s.points.map((p) => at(p).join(",")).join("L"), stroke: colour,
-        class: "line", opacity: faint, "stroke-dasharray": P.dashes[s.variant % P.dashes.length] }));
+        class: "line", "stroke-width": 1.7 + 0.9 * above(s), opacity: faint, "stroke-dasharray": P.dashes[s.variant % P.dashes.length] }));
       for (const p of s.points) {
         const [cx, cy] = at(p);
         if (!line && Number.isFinite(p.lo) && Number.isFinite(p.hi))
           root.append(P.svg("line", p.interval_on_x
             ? { x1: px(x.scale.position(p.lo)), x2: px(x.scale.position(p.hi)), y1: cy, y2: cy, stroke: colour, class: "interval" }
             : { x1: cx, x2: cx, y1: y_of(p.lo, 0), y2: y_of(p.hi, 1), stroke: colour, class: "interval" }));
-        const mark = P.svg("path", { d: P.marker_path(s.technique), transform: `translate(${cx} ${cy}) scale(4.6)`,
+        const mark = P.svg("path", { d: P.marker_path(s.technique), transform: `translate(${cx} ${cy}) scale(${4.3 + 0.9 * above(s)})`,
           fill: colour, class: "mark", "data-point": p.point.index });
         root.append(mark);
       }

@@ -39,9 +39,9 @@
   const variant_key = (variants) => {
     const several = variants.filter((v) => variants.some((w) => w.technique === v.technique && w !== v));
     if (!several.length || several.length > 16) return [];
-    return [P.element("ul", { class: "variant-key" }, ...several.map((v) => P.element("li", {}, P.svg("svg", { viewBox: "0 0 34 10", class: "dash", "aria-hidden": "true" },
+    return several.map((v) => P.element("li", {}, P.svg("svg", { viewBox: "0 0 34 10", class: "dash", "aria-hidden": "true" },
       P.svg("line", { x1: 0, x2: 34, y1: 5, y2: 5, class: "line", stroke: P.colour(v.technique), "stroke-dasharray": P.dashes[v.number % P.dashes.length] })),
-    P.marker_icon(v.technique), v.text)))];
+    P.marker_icon(v.technique), v.text));
   };
 
   const panels = (points, draw) => {
@@ -76,7 +76,10 @@
         order: ordinal ? values.findIndex((v) => JSON.stringify(v) === JSON.stringify(value)) : P.axis_number(value) };
     };
     const variants = variants_beside(points, axis);
-    return [...panels(points, (scene, list) => P.chart({ title: scene, x, y, series: series_along(list, position) })), ...variant_key(variants)];
+    return {
+      panels: panels(points, (scene, list) => P.chart({ title: scene, x, y, series: series_along(list, position) })),
+      key: variant_key(variants),
+    };
   };
 
   const against_time = (column) => {
@@ -86,7 +89,7 @@
     const x = { label: axis_of(time), scale: P.scale("log", points.map(time.get)) };
     const y = { label: axis_of(column), scale: P.scale(y_kind(column, all), all) };
     const less_is_better = !/psnr|ssim|bias/.test(column.key);
-    return panels(points, (scene, list) => {
+    return { panels: panels(points, (scene, list) => {
       const placed = list.map((p) => {
         const [lo, hi] = time.interval(p) ?? [NaN, NaN];
         return { x: time.get(p), y: column.get(p), lo, hi, interval_on_x: true, point: p };
@@ -96,7 +99,7 @@
       const scale_is_log = y_kind(column, all) === "log";
       return P.chart({ title: scene, x, y, series,
         front: less_is_better ? P.pareto_front(placed.filter((q) => !scale_is_log || q.y > 0)) : null });
-    });
+    }) };
   };
 
   const describe = (p) => {
@@ -111,9 +114,14 @@
   };
 
   const card = (title, controls, draw) => {
-    const host = P.element("div", { class: "panels" });
-    const made = P.element("article", { class: "card" }, P.element("h3", {}, title), P.element("div", { class: "controls" }, ...controls(() => redraw())), host);
-    const redraw = () => host.replaceChildren(...draw());
+    const host = P.element("div", { class: "panels" }), key = P.element("ul", { class: "variant-key" });
+    const made = P.element("article", { class: "card" }, P.element("h3", {}, title),
+      P.element("div", { class: "controls" }, ...controls(() => redraw())), host, key);
+    const redraw = () => {
+      const drawn = draw();
+      host.replaceChildren(...drawn.panels);
+      key.replaceChildren(...(drawn.key ?? []));
+    };
     P.make_marks_live(host, describe);
     P.on_filter(redraw);
     P.on_scheme_change(redraw);

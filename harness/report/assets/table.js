@@ -30,21 +30,29 @@
         P.marker_icon(p.technique), cell_text(c, p)));
     if (c.key === "status")
       return P.element("td", { class: `status ${p.status}`, title: p.message ?? null },
-        P.element("span", { class: "dot" }), p.message ? `${p.status}: ${p.message}` : p.status);
+        P.element("span", { class: "dot" }), p.status);
     const interval = interval_text(c, p);
     return P.element("td", { class: c.numeric ? "num" : null },
       cell_text(c, p), interval ? P.element("small", { title: "95 % confidence interval of the median" }, interval) : null);
   };
 
+  // A point without a result says why in place of its figures, which stand after the status.
+  const cells_of = (p) => {
+    const at = columns.findIndex((c) => c.key === "status"), rest = columns.slice(at + 1);
+    if (!p.message || !rest.length || rest.some((c) => typeof c.get(p) === "number")) return columns.map((c) => cell(c, p));
+    return [...columns.slice(0, at + 1).map((c) => cell(c, p)),
+      P.element("td", { class: "message", colspan: rest.length, title: p.message }, p.message)];
+  };
+
   // Widths are fixed from all rows' texts, so that nothing jumps while scrolling.
   const width_of = (c) => {
-    if (c.key === "status") return P.points.some((p) => p.message) ? 22 : 9;
+    if (c.key === "status") return 16;
     let longest = P.label_with_unit(c.key).length * 0.95 + 2.6;
     for (const p of P.points) {
       const interval = interval_text(c, p);
-      longest = Math.max(longest, cell_text(c, p).length + (interval ? interval.length * 0.8 + 2.5 : 0) + (c.key === "technique" ? 3 : 0));
+      longest = Math.max(longest, cell_text(c, p).length + (interval ? interval.length * 0.8 + 2.5 : 0) + (c.key === "technique" ? 5 : 0));
     }
-    return Math.min(longest, 46) + 2.2;
+    return Math.min(longest, 46) + 1.8;
   };
 
   const header = () => P.element("thead", {}, P.element("tr", { "aria-rowindex": 1 }, ...columns.map((c) => {
@@ -64,7 +72,7 @@
     const had_focus = body.contains(document.activeElement);
     const rows = sorted.slice(first, last).map((p, i) => P.element("tr",
       { tabindex: first + i === focus ? 0 : -1, "data-row": first + i, "data-point": p.index, "aria-rowindex": first + i + 2, class: p.status },
-      ...columns.map((c) => cell(c, p))));
+      ...cells_of(p)));
     body.replaceChildren(...(first ? [spacer(first)] : []), ...rows, ...(last < sorted.length && !everything ? [spacer(sorted.length - last)] : []));
     if (had_focus) body.querySelector(`[data-row="${focus}"]`)?.focus({ preventScroll: true });
   };
