@@ -75,8 +75,12 @@ std::string report_style() { return std::string(report_asset("report.css")); }
 
 std::string data_script(const nlohmann::json& data) {
   const nlohmann::json styles = nlohmann::json::parse(report_asset("techniques.json"));
-  return "window.penumbra_styles = " + script_literal(styles) +
-         ";\nwindow.penumbra_data = " + script_literal(data) + ";\n";
+  // Browsers read large data from a string of JSON in half the time of the same data as an expression.
+  std::string text = script_literal(data);
+  replace_all(text, "\\", "\\\\");
+  replace_all(text, "'", "\\'");
+  return "window.penumbra_styles = " + script_literal(styles) + ";\nwindow.penumbra_data = JSON.parse('" +
+         text + "');\n";
 }
 
 bool is_report_page(std::string_view html) { return html.find(generator) != std::string_view::npos; }

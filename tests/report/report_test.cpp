@@ -21,9 +21,12 @@ using test::ScratchFolder;
 
 json written_data(const fs::path& report) {
   const std::string script = read_file(report / "assets" / "data.js");
-  const std::string start = "window.penumbra_data = ";
+  const std::string start = "window.penumbra_data = JSON.parse('", end = "');";
   const std::size_t at = script.find(start) + start.size();
-  return json::parse(script.substr(at, script.rfind(';') - at));
+  std::string text;  // undoes the escapes of the string that holds the JSON
+  for (std::size_t i = at, stop = script.rfind(end); i < stop; ++i)
+    text += script[i] == '\\' ? script[++i] : script[i];
+  return json::parse(text);
 }
 
 void write_text(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }

@@ -18,9 +18,10 @@
     const variants = new Map();
     for (const technique of P.techniques) {
       const list = points.filter((p) => p.technique === technique), keys = P.variant_keys(list).filter((key) => key !== axis);
+      let number = 0;
       for (const p of list) {
-        const text = P.variant_text(p, keys), own = [...variants.values()].filter((v) => v.technique === technique);
-        if (!own.some((v) => v.text === text)) variants.set(technique + text, { technique, text, number: own.length });
+        const text = P.variant_text(p, keys);
+        if (!variants.has(technique + text)) variants.set(technique + text, { technique, text, number: number++ });
         p.variant = variants.get(technique + text).number;
       }
     }
