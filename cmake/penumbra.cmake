@@ -18,7 +18,7 @@ target_include_directories(penumbra_options INTERFACE "${CMAKE_SOURCE_DIR}/harne
 # (a shared edge has to negate exactly), on the host as in the shaders.
 target_compile_options(penumbra_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off
   # GCC 12 sees overlapping copies in `"text" + std::string` (GCC bug 105651); there are none.
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict -Wno-missing-field-initializers>
   $<$<BOOL:${PENUMBRA_WERROR}>:-Werror>
   $<$<BOOL:${PENUMBRA_SANITIZE}>:-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer>
   $<$<BOOL:${PENUMBRA_COVERAGE}>:--coverage>)

@@ -1,5 +1,5 @@
-// Buffers and images: owning handles. Shaders reach buffers by address (GL_EXT_buffer_reference), never by descriptor:
-// so no range limit (maxStorageBufferRange is 128 MiB on lavapipe) and no descriptor sets.
+// Buffers and images: owning handles. Shaders reach buffers by address (GL_EXT_buffer_reference), never by
+// descriptor: so no range limit (maxStorageBufferRange is 128 MiB on lavapipe) and no descriptor sets.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -7,22 +7,23 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace penumbra::gpu {
 
 class Device;
 
 enum class Memory {
-  device,      // device-local; mapped too where the device shares memory with the host
-  upload,      // host-visible, written by the host
-  read_back,   // host-visible and cached, read by the host
+  device,     // device-local; mapped too where the device shares memory with the host
+  upload,     // host-visible, written by the host
+  read_back,  // host-visible and cached, read by the host
 };
 
 class Buffer {
  public:
   Buffer() = default;
-  // Usage: storage, vertex, index, indirect, transfer both ways, device address. Throws PointError when out of memory,
-  // naming `what` and the bytes.
+  // Usage: storage, vertex, index, indirect, transfer both ways, device address. Throws PointError when out
+  // of memory, naming `what` and the bytes.
   Buffer(Device& device, std::size_t bytes, Memory memory, const std::string& what);
   ~Buffer();
   Buffer(Buffer&&) noexcept;
@@ -56,6 +57,7 @@ struct ImageDesc {
   VkFormat format = VK_FORMAT_R32_SFLOAT;
   VkImageUsageFlags usage = 0;
   bool cube = false;
+  bool array = false;  // view as an array even when layers == 1
 };
 
 // An optimally tiled 2-D image (array), one sample per pixel, with a view of the whole and one per layer.
@@ -83,7 +85,7 @@ class Image {
   VkImage image_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   VkImageView view_ = VK_NULL_HANDLE;
-  mutable VkImageView* part_views_ = nullptr;
+  mutable std::vector<VkImageView> part_views_;
   std::size_t allocated_ = 0;
 };
 

@@ -36,7 +36,8 @@ class Commands {
   void dispatch_groups(uint64_t groups);
   // Group count from a buffer of 3 uint32 at `offset`.
   template <class T>
-  void dispatch_indirect(const ComputePipeline& pipeline, const T& constants, const Buffer& counts, uint64_t offset) {
+  void dispatch_indirect(const ComputePipeline& pipeline, const T& constants, const Buffer& counts,
+                         uint64_t offset) {
     static_assert(std::is_trivially_copyable_v<T>);
     bind(pipeline);
     push(pipeline, &constants, sizeof constants);
@@ -46,21 +47,25 @@ class Commands {
 
   // Graphics (dynamic rendering). The stencil aspect is attached when the depth format has one.
   void begin_rendering(uint32_t width, uint32_t height, std::span<const RenderTarget> colors,
-                       const RenderTarget* depth, VkFormat depth_format = VK_FORMAT_UNDEFINED, uint32_t layers = 1);
+                       const RenderTarget* depth, VkFormat depth_format = VK_FORMAT_UNDEFINED,
+                       uint32_t layers = 1);
   void end_rendering();
   void set_viewport(float x, float y, float width, float height);
   void set_scissor(int x, int y, uint32_t width, uint32_t height);
   void set_depth_bias(float constant, float slope, float clamp = 0);
   void vertex_buffers(std::span<const VkBuffer> buffers);
-  void draw_indexed(const Buffer& indices, uint32_t index_count, uint32_t instances = 1, uint32_t first_index = 0);
+  void draw_indexed(const Buffer& indices, uint32_t index_count, uint32_t instances = 1,
+                    uint32_t first_index = 0);
   void draw(uint32_t vertices, uint32_t instances = 1, uint32_t first_vertex = 0);
 
   // Transfers.
-  void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0, uint64_t to_offset = 0);
+  void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0,
+            uint64_t to_offset = 0);
   void fill(const Buffer& buffer, uint32_t value, uint64_t offset = 0, uint64_t bytes = VK_WHOLE_SIZE);
   // Host bytes into the command stream; at most 65,536, a multiple of 4.
   void update(const Buffer& buffer, const void* data, uint64_t bytes, uint64_t offset = 0);
-  void copy_image_to_buffer(const Image& image, const Buffer& buffer, VkImageAspectFlags aspect, uint32_t layer = 0);
+  void copy_image_to_buffer(const Image& image, const Buffer& buffer, VkImageAspectFlags aspect,
+                            uint32_t layer = 0);
 
   // UNDEFINED -> GENERAL, contents lost. All images live in GENERAL.
   void initialise(const Image& image);

@@ -1,5 +1,5 @@
-// The Vulkan device: chosen by name or index, headless, one queue. Vulkan 1.3 with buffer addresses and dynamic
-// rendering; everything else is a capability to query.
+// The Vulkan device: chosen by name or index, headless, one queue. Vulkan 1.3 with buffer addresses and
+// dynamic rendering; everything else is a capability to query.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -13,8 +13,8 @@ namespace penumbra::gpu {
 struct DeviceInfo {
   int index = 0;
   std::string name, driver, driver_version, api_version;
-  bool software = false;          // a CPU implementation such as lavapipe
-  std::string missing;            // why Penumbra cannot use it; empty when it can
+  bool software = false;  // a CPU implementation such as lavapipe
+  std::string missing;    // why Penumbra cannot use it; empty when it can
 };
 // All devices the loader finds; empty when there is no loader or driver (never throws).
 std::vector<DeviceInfo> list_devices();
@@ -22,19 +22,19 @@ std::vector<DeviceInfo> list_devices();
 struct Capabilities {
   uint32_t subgroup_size = 0;
   uint64_t max_storage_buffer_range = 0;
-  uint64_t max_allocation = 0;             // bytes in one allocation
-  uint64_t heap_bytes = 0;                 // the largest device-local heap
+  uint64_t max_allocation = 0;  // bytes in one allocation
+  uint64_t heap_bytes = 0;      // the largest device-local heap
   uint32_t max_image_2d = 0;
   uint32_t max_workgroups_x = 0;
-  bool conservative_rasterization = false; // VK_EXT_conservative_rasterization, enabled when there
+  bool conservative_rasterization = false;  // VK_EXT_conservative_rasterization, enabled when there
   bool geometry_shader = false, fragment_stores = false, logic_op = false, depth_clamp = false, int64 = false;
-  bool unified_memory = false;             // device memory is mapped: the host mirror costs no copy
+  bool unified_memory = false;  // device memory is mapped: the host mirror costs no copy
   float timestamp_period_ns = 0;
 };
 
 struct DeviceOptions {
-  std::string select;                      // name (substring) or index; empty: PENUMBRA_DEVICE, else the first
-  bool validation = false;                 // also switched on by PENUMBRA_VALIDATION=1
+  std::string select;       // name (substring) or index; empty: PENUMBRA_DEVICE, else the first
+  bool validation = false;  // also switched on by PENUMBRA_VALIDATION=1
 };
 
 class Device {
@@ -72,9 +72,9 @@ class Device {
   VkCommandBuffer allocate_commands();
   void free_commands(VkCommandBuffer commands);
 
-  struct Allocation;   // used by Buffer and Image
-  VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags wanted, bool address,
-                          VkMemoryPropertyFlags* got, const std::string& what);
+  struct Allocation;  // used by Buffer and Image
+  VkDeviceMemory allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags wanted,
+                          bool address, VkMemoryPropertyFlags* got, const std::string& what);
   void free(VkDeviceMemory memory, uint64_t bytes);
 
  private:

@@ -1,5 +1,5 @@
-// The per-pass clock. Techniques name their passes and say what to record; only the recorder times, so that no
-// technique measures itself.
+// The per-pass clock. Techniques name their passes and say what to record; only the recorder times, so that
+// no technique measures itself.
 #pragma once
 #include <functional>
 #include <memory>
@@ -26,8 +26,9 @@ class PassRecorder {
 
   Device& device() const;
 
-  // One pass on the device; a full barrier follows it. `record` must not wait for the device. With the submit-and-fence
-  // clock the pass runs at once; with timestamps it runs at the next host_pass(), finish() or take_times().
+  // One pass on the device; a full barrier follows it. `record` must not wait for the device. With the
+  // submit-and-fence clock the pass runs at once; with timestamps it runs at the next host_pass(), finish()
+  // or take_times().
   void device_pass(std::string_view name, const std::function<void(Commands&)>& record);
   // Host work, timed by the host's clock, after everything recorded so far has finished.
   void host_pass(std::string_view name, const std::function<void()>& work);
@@ -44,8 +45,10 @@ class PassRecorder {
   std::unique_ptr<Impl> impl_;
 };
 
-// Copies between host and device outside any technique pass (set-up, results): staged where memory is not mapped.
-void upload(PassRecorder& passes, std::string_view pass, const Buffer& to, const void* data, std::size_t bytes);
+// Copies between host and device outside any technique pass (set-up, results): staged where memory is not
+// mapped.
+void upload(PassRecorder& passes, std::string_view pass, const Buffer& to, const void* data,
+            std::size_t bytes);
 void download(PassRecorder& passes, std::string_view pass, const Buffer& from, void* data, std::size_t bytes);
 
 }  // namespace penumbra::gpu

@@ -1,5 +1,6 @@
-// Compute and graphics pipelines. Parameters travel as push constants (at most 128 bytes: addresses of buffers, a few
-// numbers); images, where a pass samples or stores to them, as one set of combined image samplers / storage images.
+// Compute and graphics pipelines. Parameters travel as push constants (at most 128 bytes: addresses of
+// buffers, a few numbers); images, where a pass samples or stores to them, as one set of combined image
+// samplers / storage images.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -16,7 +17,7 @@ using Spirv = std::span<const uint32_t>;
 
 struct Specialization {
   uint32_t id;
-  uint32_t value;   // bits of an int, uint, bool or float constant
+  uint32_t value;  // bits of an int, uint, bool or float constant
 };
 
 // Binding i of set 0. Images must be in GENERAL layout.
@@ -37,12 +38,14 @@ class Pipeline {
   VkShaderStageFlags push_stages() const { return stages_; }
   uint32_t push_bytes() const { return push_bytes_; }
 
-  // Images for bindings 0, 1, ... of set 0; whole views unless a view is given. Not while commands are in flight.
+  // Images for bindings 0, 1, ... of set 0; whole views unless a view is given. Not while commands are in
+  // flight.
   void bind_images(std::span<const VkImageView> views);
   VkDescriptorSet descriptors() const { return set_; }
 
  protected:
-  void create_layout(Device& device, std::span<const ImageUse> images, uint32_t push_bytes, VkShaderStageFlags stages);
+  void create_layout(Device& device, std::span<const ImageUse> images, uint32_t push_bytes,
+                     VkShaderStageFlags stages);
   Device* device_ = nullptr;
   VkPipeline pipeline_ = VK_NULL_HANDLE;
   VkPipelineLayout layout_ = VK_NULL_HANDLE;
@@ -59,28 +62,28 @@ class Pipeline {
 class ComputePipeline : public Pipeline {
  public:
   ComputePipeline() = default;
-  ComputePipeline(Device& device, Spirv code, uint32_t push_bytes, std::span<const Specialization> constants = {},
-                  std::span<const ImageUse> images = {});
+  ComputePipeline(Device& device, Spirv code, uint32_t push_bytes,
+                  std::span<const Specialization> constants = {}, std::span<const ImageUse> images = {});
 };
 
 struct GraphicsDesc {
-  Spirv vertex, geometry, fragment;                 // geometry, fragment: may be empty
+  Spirv vertex, geometry, fragment;  // geometry, fragment: may be empty
   uint32_t push_bytes = 0;
-  std::vector<Specialization> constants;            // given to all stages
+  std::vector<Specialization> constants;  // given to all stages
   std::vector<ImageUse> images;
-  std::vector<uint32_t> vertex_strides;             // binding i: tightly packed floats, stride bytes; location i
+  std::vector<uint32_t> vertex_strides;  // binding i: tightly packed floats, stride bytes; location i
   VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
   std::vector<VkFormat> color_formats;
-  VkFormat depth_format = VK_FORMAT_UNDEFINED;      // may carry stencil
-  VkCullModeFlags cull = VK_CULL_MODE_NONE;         // front = counter-clockwise in world seen from the camera
+  VkFormat depth_format = VK_FORMAT_UNDEFINED;  // may carry stencil
+  VkCullModeFlags cull = VK_CULL_MODE_NONE;     // front = counter-clockwise in world seen from the camera
   bool depth_test = false, depth_write = false, depth_clamp = false, conservative = false;
   VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;
-  bool depth_bias = false;                          // values set by Commands::set_depth_bias
+  bool depth_bias = false;  // values set by Commands::set_depth_bias
   bool stencil_test = false;
   VkStencilOpState stencil_front{}, stencil_back{};
-  VkLogicOp logic_op = VK_LOGIC_OP_NO_OP;           // NO_OP: off
-  bool blend_add = false;                           // dst + src on all channels
-  VkBlendOp blend_op = VK_BLEND_OP_ADD;             // with blend_add: ADD, MIN or MAX
+  VkLogicOp logic_op = VK_LOGIC_OP_NO_OP;  // NO_OP: off
+  bool blend_add = false;                  // dst + src on all channels
+  VkBlendOp blend_op = VK_BLEND_OP_ADD;    // with blend_add: ADD, MIN or MAX
   VkColorComponentFlags write_mask = 0xf;
 };
 

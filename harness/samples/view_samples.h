@@ -1,6 +1,6 @@
-// View samples: for each pixel the first visible surface point through its centre. Made once per frame by a raster pass
-// (triangle index) and a compute pass (the point), the only place where positions and normals are made; every
-// technique receives the same ones, on the device and mirrored for the host.
+// View samples: for each pixel the first visible surface point through its centre. Made once per frame by a
+// raster pass (triangle index) and a compute pass (the point), the only place where positions and normals are
+// made; every technique receives the same ones, on the device and mirrored for the host.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -21,11 +21,12 @@ inline constexpr float relative_offset = 6e-6f;
 
 // Geometry as the device sees it: tightly packed, usable as vertex and index buffers and by address.
 struct GeometryOnDevice {
-  gpu::Buffer positions;   // 3 floats per vertex
-  gpu::Buffer normals;     // 3 floats per vertex
-  gpu::Buffer indices;     // uint32, 3 per triangle
+  gpu::Buffer positions;  // 3 floats per vertex
+  gpu::Buffer normals;    // 3 floats per vertex
+  gpu::Buffer indices;    // uint32, 3 per triangle
   uint32_t vertex_count = 0, triangle_count = 0;
-  // Uploads what `frame.changes` says is new, as the pass "upload_geometry". Allocates only on a topology change.
+  // Uploads what `frame.changes` says is new, as the pass "upload_geometry". Allocates only on a topology
+  // change.
   void update(gpu::Device& device, const Frame& frame, gpu::PassRecorder& passes);
 };
 
@@ -33,11 +34,11 @@ struct GeometryOnDevice {
 struct ViewSamplesHost {
   int width = 0, height = 0;
   std::span<const uint32_t> triangle;
-  std::span<const Vec2f> barycentrics;        // weights of corners 1 and 2
-  std::span<const Vec4f> position;            // P; w = view depth along the camera's forward axis
-  std::span<const Vec4f> origin;              // P' (see relative_offset); w = 1 where there is a view sample, else 0
-  std::span<const Vec4f> geometric_normal;    // Ng, unit, towards the viewer
-  std::span<const Vec4f> shading_normal;      // Ns, unit, in Ng's half-space
+  std::span<const Vec2f> barycentrics;  // weights of corners 1 and 2
+  std::span<const Vec4f> position;      // P; w = view depth along the camera's forward axis
+  std::span<const Vec4f> origin;  // P' (see relative_offset); w = 1 where there is a view sample, else 0
+  std::span<const Vec4f> geometric_normal;  // Ng, unit, towards the viewer
+  std::span<const Vec4f> shading_normal;    // Ns, unit, in Ng's half-space
   std::size_t pixel_count() const { return triangle.size(); }
 };
 

@@ -8,10 +8,14 @@ namespace penumbra {
 
 std::string expectation(const ParamInfo& info) {
   switch (info.type) {
-    case ParamType::boolean: return "true or false";
-    case ParamType::integer: return fmt::format("an integer from {} to {}", info.lo, info.hi);
-    case ParamType::number: return fmt::format("a number from {} to {}", info.lo, info.hi);
-    case ParamType::choice: return fmt::format("one of {}", fmt::join(info.choices, ", "));
+    case ParamType::boolean:
+      return "true or false";
+    case ParamType::integer:
+      return fmt::format("an integer from {} to {}", info.lo, info.hi);
+    case ParamType::number:
+      return fmt::format("a number from {} to {}", info.lo, info.hi);
+    case ParamType::choice:
+      return fmt::format("one of {}", fmt::join(info.choices, ", "));
   }
   return "";
 }
@@ -19,7 +23,8 @@ std::string expectation(const ParamInfo& info) {
 namespace {
 
 [[noreturn]] void reject(const ParamInfo& info, const ParamValue& value) {
-  std::string message = fmt::format("parameter '{}' is {}, expected {}.", info.name, to_text(value), expectation(info));
+  std::string message =
+      fmt::format("parameter '{}' is {}, expected {}.", info.name, to_text(value), expectation(info));
   if (const auto* text = std::get_if<std::string>(&value); text && info.type == ParamType::choice)
     if (const std::string near = nearest_name(*text, info.choices); !near.empty())
       message += " Did you mean '" + near + "'?";
@@ -45,9 +50,15 @@ ParamValue checked(const ParamInfo& info, const ParamValue& value) {
   const auto in_range = [&](double x) { return x >= info.lo && x <= info.hi; };  // false for NaN
   bool ok = false;
   switch (info.type) {
-    case ParamType::boolean: ok = std::holds_alternative<bool>(v); break;
-    case ParamType::integer: ok = std::holds_alternative<int64_t>(v) && in_range(double(std::get<int64_t>(v))); break;
-    case ParamType::number: ok = std::holds_alternative<double>(v) && in_range(std::get<double>(v)); break;
+    case ParamType::boolean:
+      ok = std::holds_alternative<bool>(v);
+      break;
+    case ParamType::integer:
+      ok = std::holds_alternative<int64_t>(v) && in_range(double(std::get<int64_t>(v)));
+      break;
+    case ParamType::number:
+      ok = std::holds_alternative<double>(v) && in_range(std::get<double>(v));
+      break;
     case ParamType::choice:
       if (const auto* s = std::get_if<std::string>(&v))
         for (const std::string& c : info.choices) ok = ok || c == *s;

@@ -1,0 +1,82 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "gpu/pass_recorder.h"
+#include "shaders/busy_comp.h"
+
+namespace penumbra::gpu {
+namespace {
+
+struct Busy {
+  VkDeviceAddress out;
+  uint32_t turns, groups;
+};
+
+class Passes : public testing::Test {
+ protected:
+  Device device;
+  PassRecorder passes{device};
+  ComputePipeline busy{device, busy_comp_spv, sizeof(Busy)};
+  void TearDown() override { EXPECT_TRUE(device.validation_messages().empty()); }
+};
+
+TEST_F(Passes, AddUpUnderOneNameInOrderOfFirstUse) {
+  const Buffer out(device, 256, Memory::device, "out");
+  const auto run = [&](Commands& c) { c.dispatch(busy, Busy{out.address(), 10, 1}, 1); };
+  passes.device_pass("b", run);
+  passes.host_pass("a", [] {});
+  passes.device_pass("b", run);
+  const std::vector<PassTime> times = passes.take_times();
+  ASSERT_EQ(times.size(), 2U);
+  EXPECT_EQ(times[0].name, "b");
+  EXPECT_EQ(times[1].name, "a");
+  EXPECT_TRUE(passes.take_times().empty());
+}
+
+TEST_F(Passes, AgreeWithTheWallClock) {
+  const Buffer out(device, 256, Memory::device, "out");
+  const auto run = [&](Commands& c) { c.dispatch(busy, Busy{out.address(), 8000, 2000}, 2000); };
+  passes.device_pass("compile", run);
+  passes.take_times();
+  const auto start = std::chrono::steady_clock::now();
+  passes.device_pass("busy", run);
+  passes.host_pass("sleep", [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
+  double sum = 0;
+  for (const PassTime& t : passes.take_times()) sum += t.ms;
+  const double wall =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_LE(sum, wall);
+  EXPECT_GE(sum, 20);
+  EXPECT_GE(sum, 0.5 * wall) << "the passes' clock misses most of the work";
+}
+
+TEST_F(Passes, MoveBytesBothWays) {
+  std::vector<uint32_t> in(100000), back(in.size());
+  for (std::size_t i = 0; i < in.size(); ++i) in[i] = static_cast<uint32_t>(i * 2654435761U);
+  const Buffer buffer(device, in.size() * sizeof(uint32_t), Memory::device, "buffer");
+  upload(passes, "up", buffer, in.data(), in.size() * sizeof(uint32_t));
+  download(passes, "down", buffer, back.data(), back.size() * sizeof(uint32_t));
+  EXPECT_EQ(in, back);
+}
+
+// More groups than one row of the dispatch: every one must run exactly once.
+TEST_F(Passes, DispatchReachesEveryGroupPastTheRowLimit) {
+  constexpr uint32_t groups = 70001;
+  const Buffer out(device, groups * 8 * sizeof(float), Memory::device, "out");
+  const ComputePipeline count(device, busy_comp_spv, sizeof(Busy));
+  passes.device_pass("fill", [&](Commands& c) { c.fill(out, 0); });
+  passes.device_pass("count", [&](Commands& c) {
+    c.dispatch(count, Busy{out.address(), 1, groups}, groups);
+  });
+  std::vector<float> values(groups * 8);
+  download(passes, "down", out, values.data(), values.size() * sizeof(float));
+  std::size_t wrong = 0;
+  for (float v : values) wrong += v != 1.0f;
+  EXPECT_EQ(wrong, 0U);
+}
+
+}  // namespace
+}  // namespace penumbra::gpu
