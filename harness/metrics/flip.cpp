@@ -40,16 +40,32 @@ struct View {
 
 using Plane = std::vector<float>;
 
+// Four floats at once: GCC keeps plain arrays of sums in registers only by shuffling them about, at half the
+// speed. Each lane adds in the order of the taps, so that a pixel's value does not depend on its lane.
+using Lanes = float __attribute__((vector_size(16)));
+
+Lanes load(const float* p) {
+  Lanes v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
+}
+
+void add_to(float* p, Lanes v) {
+  const Lanes sum = load(p) + v;
+  std::memcpy(p, &sum, sizeof sum);
+}
+
 // out[x] += the sum of weights[k] * in[x + k * step], for a tile's width.
 void add_filtered(const float* in, std::size_t step, const Kernel& kernel, float* out) {
   for (int x = 0; x < tile_width; x += block) {
-    float sum[block] = {};
+    Lanes a{}, b{}, c{}, d{};
     const float* tap = in + x;
     for (const float weight : kernel.weights) {
-      for (int i = 0; i < block; ++i) sum[i] += weight * tap[i];
+      a += weight * load(tap), b += weight * load(tap + 4), c += weight * load(tap + 8),
+          d += weight * load(tap + 12);
       tap += step;
     }
-    for (int i = 0; i < block; ++i) out[x + i] += sum[i];
+    add_to(out + x, a), add_to(out + x + 4, b), add_to(out + x + 8, c), add_to(out + x + 12, d);
   }
 }
 
