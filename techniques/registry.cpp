@@ -1,5 +1,6 @@
 #include "techniques/registry.h"
 
+#include "techniques/gears/gears.h"
 #include "techniques/ray_tracing/ray_tracing.h"
 
 namespace penumbra {
@@ -8,6 +9,7 @@ namespace penumbra {
 Registry all_techniques() {
   return {
       ray_tracing_technique(),
+      gears_technique(),
   };
 }
 

@@ -1,0 +1,35 @@
+#include "techniques/common/sample_groups.h"
+
+#include "shaders/sample_groups.h"
+#include "techniques/common/shaders/constants.h"
+
+namespace penumbra {
+
+void SampleGroups::setup(gpu::Device& device, uint32_t lanes) {
+  tile_height_ = 1;
+  while (tile_height_ * tile_height_ * 2 <= 8 * lanes) tile_height_ *= 2;
+  if (tile_height_ * tile_height_ > 8 * lanes) tile_height_ /= 2;
+  tile_width_ = 8 * lanes / tile_height_;
+  const gpu::Specialization constants[] = {{0, lanes}, {1, tile_width_}, {2, tile_height_}};
+  pipeline_ = gpu::ComputePipeline(device, sample_groups_spv, sizeof(SampleGroupsConstants), constants);
+}
+
+uint32_t SampleGroups::capacity(uint32_t width, uint32_t height) const { return tiles(width, height) * 8; }
+
+void SampleGroups::record(gpu::Commands& commands, const Input& in) const {
+  SampleGroupsConstants pc{};
+  pc.light = in.light;
+  pc.origin = in.origin;
+  pc.normal = in.normal;
+  pc.slots = in.slots;
+  pc.group_count = in.group_count;
+  pc.width = in.width;
+  pc.height = in.height;
+  pc.tiles_x = tiles_x(in.width);
+  pc.tiles = tiles(in.width, in.height);
+  pc.slack = in.slack;
+  pc.depth_weight = in.depth_weight;
+  commands.dispatch(pipeline_, pc, pc.tiles);
+}
+
+}  // namespace penumbra

@@ -1,0 +1,37 @@
+// Push constants of the shared kernels, for GLSL and C++: addresses are 64-bit numbers in C++, references in GLSL.
+#ifndef PENUMBRA_COMMON_CONSTANTS_H
+#define PENUMBRA_COMMON_CONSTANTS_H
+#ifdef __cplusplus
+#include <cstdint>
+namespace penumbra {
+#define PENUMBRA_UINT uint32_t
+#define PENUMBRA_ADDRESS(type) uint64_t
+#else
+#define PENUMBRA_UINT uint
+#define PENUMBRA_ADDRESS(type) type
+#endif
+
+struct SampleGroupsConstants {
+  PENUMBRA_ADDRESS(LightBasisRef) light;
+  PENUMBRA_ADDRESS(Vec4s) origin, normal;  // per pixel: P' (w = 0: no view sample), Ng
+  PENUMBRA_ADDRESS(Uints) slots;  // out: pixel of each slot, SG slots per group
+  PENUMBRA_ADDRESS(Uints) group_count;  // out: one counter, 0 before
+  PENUMBRA_UINT width, height, tiles_x, tiles;
+  float slack;  // world: more than |P' - P|
+  float depth_weight;  // of the distance to the light against the directions across
+};
+
+struct PrefixScanConstants {
+  PENUMBRA_ADDRESS(Uints) values, sums;  // in; out, one per value
+  PENUMBRA_ADDRESS(Uints) blocks;  // total (2 words), then 2 words per block
+  PENUMBRA_UINT count, block_count;
+};
+
+#undef PENUMBRA_UINT
+#undef PENUMBRA_ADDRESS
+#ifdef __cplusplus
+static_assert(sizeof(SampleGroupsConstants) <= 128);
+static_assert(sizeof(PrefixScanConstants) <= 128);
+}  // namespace
+#endif
+#endif

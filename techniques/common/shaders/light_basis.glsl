@@ -1,0 +1,21 @@
+#include "techniques/common/shaders/light_basis.h"
+layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer LightBasisRef { LightBasis b; };
+
+// Always the same expression, so that equal points stay equal.
+vec3 to_working(LightBasis b, vec3 world) {
+  precise vec3 d = world - b.origin.xyz;
+  precise vec3 w = vec3(b.row_x.x * d.x + b.row_x.y * d.y + b.row_x.z * d.z,
+                        b.row_y.x * d.x + b.row_y.y * d.y + b.row_y.z * d.z,
+                        b.row_z.x * d.x + b.row_z.y * d.y + b.row_z.z * d.z);
+  return w;
+}
+
+// False when no point of the light can be above the horizon of the view sample P' = o with normal n, or o is behind the
+// light. `slack`: more than |P' - P|.
+bool reachable(LightBasis b, vec4 o, vec3 n, float slack) {
+  bool above = false;
+  for (uint c = 0u; c < b.corner_count; c++)
+    above = above || dot(n, b.corners[c].xyz - o.xyz * b.corners[c].w) > -slack;
+  bool front = b.front_only == 0u || dot(b.row_z.xyz, o.xyz - b.origin.xyz) > -slack * length(b.row_z.xyz);
+  return o.w != 0.0 && above && front;
+}

@@ -1,0 +1,103 @@
+#include "techniques/gears/clusters.h"
+
+#include "shaders/gears_refit.h"
+#include "shaders/gears_walk_tree_any.h"
+#include "shaders/gears_walk_tree_grid.h"
+
+namespace penumbra::gears {
+
+void Clusters::setup(FrameState& state) {
+  gpu::Device& device = *state.device;
+  groups_.setup(device, state.lanes);
+  prepare_ = prepare_pipeline(state);
+  const gpu::Specialization constants[] = {{0, state.lanes}, {1, wide_lanes}};
+  refit_ = gpu::ComputePipeline(device, gears_refit_spv, sizeof(RefitConstants), constants);
+  walker_.setup(state, gears_walk_tree_grid_spv, gears_walk_tree_any_spv, sizeof(WalkTreeConstants));
+}
+
+void Clusters::build(FrameState& state, const Geometry& geometry, gpu::PassRecorder& passes) {
+  passes.host_pass("order_triangles",
+                   [&] { order_ = order_triangles(geometry, state.lanes, state.params.triangle_order); });
+  passes.finish();
+  gpu::ensure(boxes_, *state.device, std::size_t{order_.node_count} * 2 * sizeof(Vec4f), gpu::Memory::device,
+              "the box tree");
+  state.set_order(order_.slots, order_.tree_slots, passes);
+  passes.finish();
+  order_.slots = {};
+}
+
+void Clusters::prepare(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
+  passes.device_pass("prepare_triangles", [&](gpu::Commands& commands) {
+    state.prepare(commands, prepare_, *in.scene_case->geometry, boxes_, order_.first_leaf, order_.leaf_count);
+  });
+  passes.device_pass("refit", [&](gpu::Commands& commands) {
+    // Level by level from the leaves' parents to the root: nodes [first, past).
+    for (uint32_t past = order_.first_leaf; past > 0;) {
+      const uint32_t first = (past - 1) / state.lanes;
+      RefitConstants pc{};
+      pc.boxes = boxes_.address();
+      pc.first = first;
+      pc.count = past - first;
+      pc.node_count = order_.node_count;
+      commands.dispatch(refit_, pc, groups_for(pc.count, wide_lanes));
+      commands.barrier();
+      past = first;
+    }
+  });
+}
+
+void Clusters::group(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
+  const uint32_t capacity = groups_.capacity(state.width, state.height);
+  gpu::ensure(state.slots, *state.device, std::size_t{capacity} * state.lanes * 4, gpu::Memory::device,
+              "groups of view samples");
+  gpu::ensure(state.resume, *state.device, std::size_t{capacity} * 3 * 4, gpu::Memory::device,
+              "groups to go on with");
+  SampleGroups::Input input;
+  input.light = state.frame.address();
+  input.origin = in.view_samples->origin().address();
+  input.normal = in.view_samples->geometric_normal().address();
+  input.slots = state.slots.address();
+  input.group_count = state.header.address();
+  input.width = state.width;
+  input.height = state.height;
+  input.slack = state.slack;
+  input.depth_weight = state.params.depth_weight;
+  passes.device_pass("group_samples", [&](gpu::Commands& commands) { groups_.record(commands, input); });
+}
+
+void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Walker::Statistics statistics) {
+  WalkTreeConstants pc{};
+  pc.frame = state.frame.address();
+  pc.slots = state.slots.address();
+  pc.masks = state.masks_address(in);
+  pc.triangles = state.triangles.address();
+  pc.boxes = boxes_.address();
+  pc.list = state.list.address();
+  pc.resume = state.resume.address();
+  pc.header = state.header.address();
+  pc.groups = group_count_;
+  pc.first_leaf = order_.first_leaf;
+  walks_ = walker_.run(state, passes, "walk", group_count_, list_count_, true, statistics,
+                       [pc](gpu::Commands& commands, const gpu::ComputePipeline& p, const Walker::Turn& t) mutable {
+                         pc.list_begin = t.list_begin;
+                         pc.list_end = t.list_end;
+                         pc.read_list = t.read_list;
+                         // First turns take the groups in an interleaved order, over a rectangle of 64 rows.
+                         const uint64_t columns = (uint64_t{pc.groups} + 1023) / 1024;
+                         const uint64_t work = t.resumed ? t.work_groups : columns * 1024;
+                         pc.work_groups = static_cast<uint32_t>(work);
+                         commands.dispatch(p, pc, work);
+                       });
+}
+
+void Clusters::render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
+  state.begin(in, passes);
+  prepare(state, in, passes);
+  group(state, in, passes);
+  const Header h = state.read_header(passes);
+  group_count_ = h.group_count;
+  list_count_ = h.list_count;
+  walk(state, in, passes, Walker::Statistics::none);
+}
+
+}  // namespace penumbra::gears

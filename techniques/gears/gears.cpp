@@ -1,0 +1,86 @@
+#include "techniques/gears/gears.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+
+#include "techniques/gears/cells.h"
+#include "techniques/gears/clusters.h"
+
+namespace penumbra {
+namespace {
+
+using namespace gears;
+
+constexpr int most_light_samples = 4096;
+
+class Gears final : public Technique {
+ public:
+  explicit Gears(const GearsParams& params) : params_(params) { state_.params = params; }
+
+  std::optional<std::string> supports(const Case& c) const override {
+    if (params_.backend == GearsParams::Backend::cpu)
+      return "The cpu backend of gears is not there yet; use backend=vulkan.";
+    const uint32_t lanes = lanes_of(*c.device);
+    if (lanes < 4 || !std::has_single_bit(lanes))
+      return fmt::format("gears needs subgroups of 4 lanes or more; this device has {}.", lanes);
+    if (c.light_samples->count() > most_light_samples)
+      return fmt::format("gears takes at most {} light samples; these are {}.", most_light_samples,
+                         c.light_samples->count());
+    return std::nullopt;
+  }
+
+  void setup(const Case& c, gpu::PassRecorder& passes) override {
+    state_.set_light(c, passes);
+    ready_ = state_.layout;
+    resolve_.setup(state_);
+    clusters() ? clusters_.setup(state_) : cells_.setup(state_);
+  }
+
+  void build(const Case& c, gpu::PassRecorder& passes) override {
+    const Changes& changes = c.frame->changes;
+    if (!built_ || changes.topology || changes.light || changes.positions) state_.set_light(c, passes);
+    if (!ready_ || *ready_ != state_.layout) setup(c, passes);
+    if (!built_ || changes.topology)
+      clusters() ? clusters_.build(state_, c.frame->geometry, passes) : cells_.build(state_, c.frame->geometry, passes);
+    built_ = true;
+    passes.finish();
+  }
+
+  void render(const RenderInput& in, gpu::PassRecorder& passes) override {
+    clusters() ? clusters_.render(state_, in, passes) : cells_.render(state_, in, passes);
+    resolve_.run(state_, in, passes);
+  }
+
+  uint64_t structure_bytes() const override { return state_.bytes() + clusters_.bytes() + cells_.bytes(); }
+
+ private:
+  bool clusters() const { return params_.assignment == GearsParams::Assignment::clusters; }
+
+  GearsParams params_;
+  FrameState state_;
+  std::optional<MaskLayout> ready_;   // what the pipelines are made for
+  bool built_ = false;
+  Resolve resolve_;
+  Clusters clusters_;
+  Cells cells_;
+};
+
+}  // namespace
+
+TechniqueInfo gears_technique() {
+  TechniqueInfo info;
+  info.name = "gears";
+  info.title = "GEARS: visibility masks rasterised per view sample";
+  info.sources = {"GEARS"};
+  info.params = gears_params().infos();
+  info.lights = {LightKind::point,  LightKind::directional,        LightKind::spot,  LightKind::rectangle,
+                 LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
+  info.sampled = true;
+  info.make = [](const ParamValues& values) -> std::unique_ptr<Technique> {
+    return std::make_unique<Gears>(gears_params().read(values));
+  };
+  return info;
+}
+
+}  // namespace penumbra

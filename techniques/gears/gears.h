@@ -1,0 +1,7 @@
+// GEARS (`gears`): the room's entry in the registry.
+#pragma once
+#include "technique/technique.h"
+
+namespace penumbra {
+TechniqueInfo gears_technique();
+}

@@ -1,0 +1,197 @@
+// The visibility mask of a regular grid of light samples: COLUMNS x ROWS, light sample (i, j) at (i, j, 0) of working
+// space. A row takes PITCH bits (a power of two >= COLUMNS) of a word, or two words where PITCH is 64; what no light
+// sample owns stays 1, so that a full mask is all ones.
+layout(constant_id = 1) const int COLUMNS = 16;
+layout(constant_id = 2) const int ROWS = 16;
+layout(constant_id = 3) const int PITCH = 16;
+layout(constant_id = 4) const int WORDS = 8;
+const int ROWS_PER_WORD = PITCH >= 32 ? 1 : 32 / PITCH;
+const float far_away = 1e30;
+
+vec3 p;                     // view sample
+vec3 group_lo, group_hi;    // box of the group's view samples
+uint mask[WORDS];
+uint open_[WORDS];          // light samples that some view sample of the group still sees
+vec4 open_rect;             // their columns (x, y) and rows (z, w)
+float pad;
+
+// Bits below n, 0 <= n <= 32.
+uint below(int n) { return PITCH < 32 ? (1u << n) - 1u : (n >= 32 ? 0xffffffffu : (1u << n) - 1u); }
+
+// Bits of the columns in [lo, hi] for word `part` of a row.
+uint span(float lo, float hi, int part) {
+  const int width = PITCH > 32 ? 32 : PITCH;
+  int a = int(ceil(lo)), b = int(floor(hi)) + 1;
+  if (PITCH > 32) {
+    a = clamp(a - 32 * part, 0, width);
+    b = clamp(b - 32 * part, 0, width);
+  }
+  return below(b) & ~below(a);
+}
+
+// Light samples that a view sample at P with normal n does not face, or that face away from it, are blocked.
+void block_horizon(vec3 P, vec3 n, FrameConstants f) {
+  bool behind = dot(f.light.row_z.xyz, P - f.light.origin.xyz) <= 0.0;
+  float h = dot(n, f.first.xyz - P), hx = dot(n, f.step_u.xyz), hy = dot(n, f.step_v.xyz);
+  float inverse = -1.0 / (hx == 0.0 ? 1.0 : hx);
+  for (int q = 0; q < WORDS; q++) {
+    uint w = 0u;
+    [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
+      int row = PITCH > 32 ? q >> 1 : q * ROWS_PER_WORD + r;
+      float v = h + hy * float(row), x = clamp(v * inverse, -2.0, float(PITCH) + 1.0);
+      // hx > 0: blocked up to x; hx < 0: blocked from x on; else the whole row or nothing.
+      float lo = hx < 0.0 ? x : 0.0, hi = hx > 0.0 ? x : float(PITCH - 1);
+      hi = hx == 0.0 && v > 0.0 ? -1.0 : hi;
+      uint bits = span(clamp(lo, 0.0, float(PITCH)), clamp(hi, -1.0, float(PITCH - 1)), q & 1);
+      uint owned = row < ROWS ? span(0.0, float(COLUMNS - 1), q & 1) : 0u;
+      bits |= ~owned;
+      w |= PITCH >= 32 ? bits : (bits & below(PITCH)) << (r * PITCH);
+    }
+    mask[q] = behind ? 0xffffffffu : w;
+  }
+}
+
+void begin_mask() {
+  open_rect = vec4(0.0, float(COLUMNS - 1), 0.0, float(ROWS - 1));
+  for (int q = 0; q < WORDS; q++) open_[q] = 0xffffffffu;
+}
+
+void update_open() {
+  uint columns = 0u, columns_high = 0u;
+  float r0 = 1e3, r1 = -1.0;
+  for (int q = 0; q < WORDS; q++) {
+    uint u = or_of_all(~mask[q]);
+    open_[q] = u;
+    if (PITCH > 32) {
+      columns |= (q & 1) == 0 ? u : 0u;
+      columns_high |= (q & 1) == 1 ? u : 0u;
+      r0 = lower(r0, u != 0u ? float(q >> 1) : 1e3);
+      r1 = u != 0u ? float(q >> 1) : r1;
+    } else {
+      [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
+        uint row = PITCH == 32 ? u : (u >> (r * PITCH)) & below(PITCH);
+        columns |= row;
+        float at = float(q * ROWS_PER_WORD + r);
+        r0 = lower(r0, row != 0u ? at : 1e3);
+        r1 = row != 0u ? at : r1;
+      }
+    }
+  }
+  int c0 = columns != 0u ? findLSB(columns) : 32 + findLSB(columns_high);
+  int c1 = columns_high != 0u ? 32 + findMSB(columns_high) : findMSB(columns);
+  open_rect = vec4(float(c0), float(c1), r0, r1);
+}
+
+// True where a light sample of the rectangle may still be seen from the group.
+bool is_open(int i0, int i1, int j0, int j1) {
+  uint found = 0u;
+  if (PITCH <= 32) {
+    uint row = below(i1 + 1) & ~below(i0), columns = row;
+    [[unroll]] for (int r = 1; r < ROWS_PER_WORD; r++) columns |= row << (r * PITCH);
+    for (int q = 0; q < WORDS; q++) {
+      int from = clamp((j0 - q * ROWS_PER_WORD) * PITCH, 0, 32), to = clamp((j1 + 1 - q * ROWS_PER_WORD) * PITCH, 0, 32);
+      uint rows = (to >= 32 ? 0xffffffffu : (1u << to) - 1u) & ~(from >= 32 ? 0xffffffffu : (1u << from) - 1u);
+      found |= open_[q] & rows & columns;
+    }
+    return found != 0u;
+  }
+  return true;
+}
+
+// Rectangle of light samples that a box can hide from any view sample of the group, packed; false: none.
+//
+// A point q hides from p the light plane's point q s + p (1 - s), s = p.z / (p.z - q.z) >= 1 for q above the plane of
+// the light; per axis it is extreme at the ends of s. Padded before the magnification by s. What reaches down to the
+// view samples' own height may hide anything on its side.
+bool touches(vec3 lo, vec3 hi, out uint rect) {
+  float z0 = upper(lo.z, 0.0);
+  bool above = z0 < group_hi.z;
+  float s0 = group_hi.z / (group_hi.z - z0 + pad), rest = group_lo.z - hi.z - pad;
+  float s1 = rest > pad ? group_lo.z / rest : far_away;
+  float t0 = s0 - 1.0;
+  vec2 nearer_lo = lo.xy * s0 - group_hi.xy * t0, nearer_hi = hi.xy * s0 - group_lo.xy * t0;
+  vec2 further_lo = (lo.xy - group_hi.xy - 2.0 * pad) * s1 + group_hi.xy;
+  vec2 further_hi = (hi.xy - group_lo.xy + 2.0 * pad) * s1 + group_lo.xy;
+  const float slack = 0.01;
+  float i0 = ceil(upper(lower(nearer_lo.x, further_lo.x) - slack, open_rect.x));
+  float i1 = floor(lower(upper(nearer_hi.x, further_hi.x) + slack, open_rect.y));
+  float j0 = ceil(upper(lower(nearer_lo.y, further_lo.y) - slack, open_rect.z));
+  float j1 = floor(lower(upper(nearer_hi.y, further_hi.y) + slack, open_rect.w));
+  int a = int(clamp(i0, 0.0, float(COLUMNS - 1))), b = int(clamp(i1, 0.0, float(COLUMNS - 1)));
+  int c = int(clamp(j0, 0.0, float(ROWS - 1))), d = int(clamp(j1, 0.0, float(ROWS - 1)));
+  rect = uint(a) | uint(b) << 8 | uint(c) << 16 | uint(d) << 24;
+  return above && i0 <= i1 && j0 <= j1 && is_open(a, b, c, d);
+}
+
+// A half-space's bound on the columns of row j: column >= or <= slope j + offset.
+struct Bounds {
+  vec3 lo_slope, lo_offset, hi_slope, hi_offset;
+};
+
+const float least = 1e-20;
+
+// Sets in each view sample's mask the light samples of `rect` that triangle (a, b, c) hides; corners relative to p.
+// CROSSING: the triangle crosses the light's plane; a fourth half-space keeps what lies beyond the light out.
+// Returns the number of light samples found (whether or not hidden before) where `counting`, else 0.
+uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) {
+  a.z = -a.z;
+  b.z = -b.z;
+  c.z = -c.z;
+  vec3 ab = edge_normal(a, b), bc = edge_normal(b, c), ca = edge_normal(c, a);
+  vec3 nx = vec3(ab.x, bc.x, ca.x), ny = vec3(ab.y, bc.y, ca.y), nz = vec3(ab.z, bc.z, ca.z);
+  float volume = ab.x * c.x + ab.y * c.y + ab.z * c.z;
+  uint side = floatBitsToUint(volume) & 0x80000000u;
+  // Edge value at light sample (i, j): nx (i - p.x) + ny (j - p.y) + nz p.z. Solved for i; a tiny nx keeps its sign.
+  uvec3 sign_ = floatBitsToUint(nx) & 0x80000000u;
+  vec3 inverse = -1.0 / mix(nx, uintBitsToFloat(sign_ | floatBitsToUint(least)), lessThan(abs(nx), vec3(least)));
+  vec3 slope = ny * inverse, offset = (nz * p.z) * inverse - slope * p.y + p.x;
+  bvec3 upper_bound = notEqual(sign_ ^ side, uvec3(0u));
+  vec3 lo_slope = mix(slope, vec3(0.0), upper_bound), lo_offset = mix(offset, vec3(-far_away), upper_bound);
+  vec3 hi_slope = mix(vec3(0.0), slope, upper_bound), hi_offset = mix(vec3(far_away), offset, upper_bound);
+  float lo4_slope = 0.0, lo4 = -far_away, hi4_slope = 0.0, hi4 = far_away;
+  if (crossing) {
+    vec3 n = edge_normal(b - a, c - a);
+    uint s = floatBitsToUint(n.x) & 0x80000000u;
+    float inv = -1.0 / (abs(n.x) < least ? uintBitsToFloat(s | floatBitsToUint(least)) : n.x);
+    float m = n.y * inv, o = (n.z * p.z - dot(n, a)) * inv - m * p.y + p.x;
+    bool is_upper = (s ^ side) != 0u;
+    lo4_slope = is_upper ? 0.0 : m;
+    lo4 = is_upper ? -far_away : o;
+    hi4_slope = is_upper ? m : 0.0;
+    hi4 = is_upper ? o : far_away;
+  }
+  float c0 = float(rect & 255u), c1 = float((rect >> 8) & 255u);
+  int j0 = int((rect >> 16) & 255u), j1 = int(rect >> 24);
+  int q = j0 / ROWS_PER_WORD, last = j1 / ROWS_PER_WORD;
+  uint found = 0u;
+  do {
+    uint w = 0u, w_high = 0u;
+    [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
+      float j = float(q * ROWS_PER_WORD + r);
+      float x0 = upper(fma(lo_slope, vec3(j), lo_offset)), x1 = lower(fma(hi_slope, vec3(j), hi_offset));
+      if (crossing) {
+        x0 = upper(x0, fma(lo4_slope, j, lo4));
+        x1 = lower(x1, fma(hi4_slope, j, hi4));
+      }
+      x0 = lower(upper(x0, c0), float(PITCH));
+      x1 = upper(lower(x1, c1), -1.0);
+      uint bits = span(x0, x1, 0);
+      if (PITCH > 32) w_high = span(x0, x1, 1);
+      w |= PITCH >= 32 ? bits : bits << (r * PITCH);
+    }
+    if (ROWS_PER_WORD > 1) {
+      int from = max(j0 - q * ROWS_PER_WORD, 0) * PITCH, past = 32 - min(j1 + 1 - q * ROWS_PER_WORD, ROWS_PER_WORD) * PITCH;
+      w &= (0xffffffffu << from) & (0xffffffffu >> past);
+    }
+    if (PITCH > 32) {
+      mask[2 * q] |= w;
+      mask[2 * q + 1] |= w_high;
+    } else {
+      mask[q] |= w;
+    }
+    if (counting) found += uint(bitCount(w) + bitCount(w_high));
+    q++;
+    turns++;
+  } while (q <= last);
+  return found;
+}

@@ -1,0 +1,96 @@
+// The visibility mask of any set of light samples, one bit each: every sample is held against the triangle's three edge
+// half-spaces and its plane. Working space is the world, moved.
+layout(constant_id = 1) const int SAMPLES = 1;
+layout(constant_id = 4) const int WORDS = 1;
+layout(constant_id = 5) const bool INFINITE = false;   // samples are directions
+
+vec3 p;
+vec3 group_lo, group_hi;
+uint mask[WORDS];
+float pad;
+vec3 grow_lo, grow_hi;      // from the group's box to the light's, per unit of t
+Vec4s light_samples;
+
+void begin_light(FrameConstants f, Vec4s samples) {
+  light_samples = samples;
+  vec3 lo = f.light_lo.xyz, hi = f.light_hi.xyz;
+  grow_lo = INFINITE ? lo : lo - group_lo;
+  grow_hi = INFINITE ? hi : hi - group_hi;
+}
+
+vec4 light_sample(int i) { return light_samples.at[min(i, SAMPLES - 1)]; }
+
+// n, P in world space, light samples too.
+void block_horizon(vec3 P, vec3 n, FrameConstants f) {
+  vec3 from_light = P - f.apex.xyz;
+  bool behind = f.front.w != 0.0 && dot(f.front.xyz, from_light) <= 0.0;
+  behind = behind || (f.cone.w > -2.0 && dot(f.cone.xyz, from_light) < f.cone.w * length(from_light));
+  for (int q = 0; q < WORDS; q++) {
+    uint w = 0u;
+    for (int k = 0; k < 32; k += int(SG)) {
+      vec4 mine = light_sample(32 * q + k + int(gl_SubgroupInvocationID));
+      for (int l = 0; l < int(SG); l++) {
+        vec4 L = vec4(subgroupShuffle(mine.x, uint(l)), subgroupShuffle(mine.y, uint(l)), subgroupShuffle(mine.z, uint(l)), mine.w);
+        vec3 d = L.xyz - (INFINITE ? vec3(0.0) : P);
+        bool blocked = !(dot(n, d) > 0.0) || 32 * q + k + l >= SAMPLES;
+        w |= blocked ? 1u << (k + l) : 0u;
+      }
+    }
+    mask[q] = behind ? 0xffffffffu : w;
+  }
+}
+
+void begin_mask() {}
+void update_open() {}
+
+// The hull of the group's box and the light's is the union of the boxes between them, box(t) for t in [0, 1]; a box
+// that meets it meets box(t) in all axes for one t: six linear conditions on t.
+bool touches(vec3 lo, vec3 hi, out uint rect) {
+  float t0 = 0.0, t1 = INFINITE ? 1e30 : 1.0;
+  vec3 need_hi = lo - group_hi - pad, need_lo = hi - group_lo + pad;   // grow_hi t >= need_hi, grow_lo t <= need_lo
+  [[unroll]] for (int k = 0; k < 3; k++) {
+    float g = grow_hi[k], r = need_hi[k] / (abs(g) < 1e-30 ? 1e-30 : g);
+    t0 = upper(t0, g >= -1e-30 ? r : t0);
+    t1 = lower(t1, g < -1e-30 ? r : t1);
+    g = grow_lo[k];
+    r = need_lo[k] / (abs(g) < 1e-30 ? 1e-30 : g);
+    t1 = lower(t1, g >= -1e-30 ? r : t1);
+    t0 = upper(t0, g < -1e-30 ? r : t0);
+  }
+  rect = 0u;
+  return t0 <= t1 + 1e-5 * (1.0 + abs(t1));
+}
+
+uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) {
+  vec3 ab = edge_normal(a, b), bc = edge_normal(b, c), ca = edge_normal(c, a), plane = edge_normal(b - a, c - a);
+  float volume = ab.x * c.x + ab.y * c.y + ab.z * c.z, s = volume < 0.0 ? -1.0 : 1.0;
+  ab *= s;
+  bc *= s;
+  ca *= s;
+  plane *= s;
+  volume = abs(volume);
+  uint found = 0u;
+  int q = 0;
+  do {
+    uint w = 0u;
+    for (int k = 0; k < min(32, SAMPLES); k += int(SG)) {
+      vec4 mine = light_sample(32 * q + k + int(gl_SubgroupInvocationID));
+      for (int l = 0; l < min(int(SG), SAMPLES); l++) {
+        vec3 d = vec3(subgroupShuffle(mine.x, uint(l)), subgroupShuffle(mine.y, uint(l)), subgroupShuffle(mine.z, uint(l)));
+        d = INFINITE ? d : d - sample_origin - p;
+        precise float e0 = ab.x * d.x + ab.y * d.y + ab.z * d.z;
+        precise float e1 = bc.x * d.x + bc.y * d.y + bc.z * d.z;
+        precise float e2 = ca.x * d.x + ca.y * d.y + ca.z * d.z;
+        bool hidden = e0 >= 0.0 && e1 >= 0.0 && e2 >= 0.0;
+        hidden = hidden && (INFINITE || dot(plane, d) > volume) && 32 * q + k + l < SAMPLES;
+        w |= hidden ? 1u << (k + l) : 0u;
+        turns++;
+      }
+    }
+    mask[q] |= w;
+    if (counting) found += uint(bitCount(w));
+    q++;
+    turns++;
+  } while (q < WORDS);
+  return found;
+}

@@ -1,0 +1,56 @@
+// From the masks as walked to the masks as handed out, and their visibility. Bits that no light sample owns become 0.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "techniques/gears/shaders/frame.glsl"
+layout(local_size_x_id = 0) in;
+layout(constant_id = 0) const uint LANES = 64;
+layout(constant_id = 1) const uint SAMPLES = 256;
+layout(constant_id = 2) const uint COLUMNS = 16;       // of a row
+layout(constant_id = 3) const uint PITCH = 16;         // bits that a row takes in the walked mask
+layout(constant_id = 4) const uint WORDS = 8;          // of the walked mask
+layout(constant_id = 5) const bool PACKED = true;      // both masks have one layout
+layout(constant_id = 6) const bool WEIGHTED = false;
+
+layout(push_constant) uniform Push { ResolveConstants pc; };
+
+const uint HALF = PITCH > 32 ? 2 : 1;   // words of a row that takes more than one
+
+uint owned(uint word) { return SAMPLES - 32u * word >= 32u ? 0xffffffffu : (1u << (SAMPLES - 32u * word)) - 1u; }
+
+void unpack(uint pixel) {
+  uint word = 0u, fill = 0u, current = 0u;
+  for (uint row = 0u; row * COLUMNS < SAMPLES; row++)
+    for (uint part = 0u; part < HALF; part++) {
+      uint bit = row * PITCH + 32u * part, n = min(COLUMNS - 32u * part, 32u);
+      uint bits = pc.walked.at[pixel * WORDS + bit / 32u] >> (bit % 32u);
+      bits &= n >= 32u ? 0xffffffffu : (1u << n) - 1u;
+      current |= bits << fill;
+      if (fill + n >= 32u) {
+        pc.masks.at[pixel * pc.mask_words + word] = current;
+        word++;
+        uint used = 32u - fill;
+        current = used >= 32u ? 0u : bits >> used;
+        fill = fill + n - 32u;
+      } else {
+        fill += n;
+      }
+    }
+  if (fill > 0u) pc.masks.at[pixel * pc.mask_words + word] = current;
+}
+
+void main() {
+  uint pixel = linear_group() * LANES + gl_LocalInvocationID.x;
+  if (pixel >= pc.pixels) return;
+  if (!PACKED) unpack(pixel);
+  uint blocked = 0u;
+  float seen = 0.0;
+  for (uint k = 0u; k < pc.mask_words; k++) {
+    uint i = pixel * pc.mask_words + k, w = pc.masks.at[i] & owned(k);
+    if (PACKED) pc.masks.at[i] = w;
+    blocked += uint(bitCount(w));
+    if (WEIGHTED)
+      for (uint b = 0u; b < 32u; b++)
+        if (32u * k + b < SAMPLES && (w >> b & 1u) == 0u) seen += pc.weights.at[32u * k + b];
+  }
+  pc.visibility.at[pixel] = WEIGHTED ? seen : float(SAMPLES - blocked) / float(SAMPLES);
+}

@@ -1,0 +1,121 @@
+// What the walk over the tree and the walk over the cells share: one subgroup does one group of SG view samples; its
+// lanes are boxes, then triangles, then view samples.
+//
+// lavapipe silently ends loops after 65,535 turns of an invocation, all its loops together: every loop counts `turns`,
+// and a group that nears TURN_LIMIT writes down where it is and goes on in another dispatch.
+#include "techniques/gears/shaders/frame.glsl"
+layout(local_size_x_id = 0) in;
+layout(constant_id = 0) const uint SG = 8;
+layout(constant_id = 6) const bool RESUMED = false;
+layout(constant_id = 7) const uint LEAF_BATCH = 8;       // leaves collected before their triangles are rasterised
+layout(constant_id = 8) const uint TURN_LIMIT = 20000;
+layout(constant_id = 9) const uint COUNTING = 0;         // 1: statistics of this walk; 2: and no pair is skipped
+layout(constant_id = 10) const bool BEGIN = true;        // this dispatch begins the masks,
+layout(constant_id = 11) const bool LIST = true;         // does a part of the list,
+layout(constant_id = 12) const bool WALK = true;         // walks the tree or the cells
+#include "techniques/common/shaders/subgroup.glsl"
+#include "techniques/common/shaders/edge_half_spaces.glsl"
+
+uint turns = 0u;
+vec3 sample_origin;
+uint pairs = 0u, necessary = 0u, nodes = 0u, leaves = 0u;
+
+#ifdef GRID
+#include "techniques/gears/shaders/mask_grid.glsl"
+#else
+#include "techniques/gears/shaders/mask_samples.glsl"
+#endif
+
+uint pixel;
+bool idle;
+
+void begin_group(uint g, FrameRef frame, Uints slots) {
+  pixel = slots.at[g * SG + gl_SubgroupInvocationID];
+  idle = pixel == no_sample;
+  pixel = idle ? subgroupShuffle(pixel, 0u) : pixel;   // the first slot of a group always holds one
+  p = to_working(frame.f.light, frame.f.origin.at[pixel].xyz);
+  pad = frame.f.pad;
+#ifdef GRID
+  p.z = upper(p.z, pad);
+#endif
+  group_lo = lowest(p);
+  group_hi = highest(p);
+  begin_mask();
+#ifndef GRID
+  sample_origin = frame.f.light.origin.xyz;
+  begin_light(frame.f, frame.f.light_samples);
+#endif
+}
+
+void load_mask(Uints masks) {
+  for (int q = 0; q < WORDS; q++) mask[q] = masks.at[pixel * uint(WORDS) + uint(q)];
+}
+
+void store_mask(Uints masks) {
+  if (!idle)
+    for (int q = 0; q < WORDS; q++) masks.at[pixel * uint(WORDS) + uint(q)] = mask[q];
+}
+
+// Every view sample of the group sees no light sample any more.
+bool all_blocked() {
+  uint w = 0xffffffffu;
+  for (int q = 0; q < WORDS; q++) w &= mask[q];
+  return COUNTING != 2u && subgroupAll(w == 0xffffffffu);
+}
+
+// Lanes are triangles: the one in `slot` of each lane with `wanted`. Then all that touch the mask are rasterised, lanes
+// being view samples. `listed`: from the list, so possibly through the light's plane.
+void rasterise_slots(Vec4s triangles, uint slot, bool wanted, bool listed) {
+  vec4 a = triangles.at[slot * 3u];
+  vec3 b = triangles.at[slot * 3u + 1u].xyz, c = triangles.at[slot * 3u + 2u].xyz;
+  uint rect;
+  bool hit = touches(lower(lower(a.xyz, b), c), upper(upper(a.xyz, b), c), rect) && wanted && (listed || a.w == 0.0);
+  uint left = subgroupBallot(hit).x;
+  if (left == 0u) return;
+  do {
+    uint l = uint(findLSB(left));
+    left &= left - 1u;
+    vec3 A = vec3(subgroupShuffle(a.x, l), subgroupShuffle(a.y, l), subgroupShuffle(a.z, l)) - p;
+    vec3 B = vec3(subgroupShuffle(b.x, l), subgroupShuffle(b.y, l), subgroupShuffle(b.z, l)) - p;
+    vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
+    uint found = rasterise(A, B, C, subgroupShuffle(rect, l), listed, COUNTING != 0u);
+    turns++;
+    if (COUNTING != 0u && !idle) {
+      pairs++;
+      necessary += found != 0u ? 1u : 0u;
+    }
+  } while (left != 0u);
+}
+
+void do_list(Vec4s triangles, Uints list, uint begin, uint end) {
+  uint i = begin;
+  do {
+    uint mine = i + gl_SubgroupInvocationID;
+    bool wanted = mine < end;
+    rasterise_slots(triangles, wanted ? list.at[mine] : 0u, wanted, true);
+    i += SG;
+    turns++;
+  } while (i < end);
+}
+
+void add_wide(HeaderRef header, uint which, uint v) {
+  uint old = which == 0u ? atomicAdd(header.h.nodes[0], v) : which == 1u ? atomicAdd(header.h.leaves[0], v)
+             : which == 2u ? atomicAdd(header.h.pairs[0], v) : atomicAdd(header.h.necessary[0], v);
+  if (old + v < old) {
+    if (which == 0u) atomicAdd(header.h.nodes[1], 1u);
+    if (which == 1u) atomicAdd(header.h.leaves[1], 1u);
+    if (which == 2u) atomicAdd(header.h.pairs[1], 1u);
+    if (which == 3u) atomicAdd(header.h.necessary[1], 1u);
+  }
+}
+
+void add_statistics(HeaderRef header) {
+  if (COUNTING == 0u) return;
+  uint all_pairs = sum_of_all(pairs), all_necessary = sum_of_all(necessary);
+  if (gl_SubgroupInvocationID == 0u) {
+    add_wide(header, 0u, nodes);
+    add_wide(header, 1u, leaves);
+    add_wide(header, 2u, all_pairs);
+    add_wide(header, 3u, all_necessary);
+  }
+}

@@ -1,0 +1,112 @@
+// assignment: clusters. A group of view samples walks the box tree together, collects leaves, rasterises their
+// triangles, and skips what can hide no light sample that is still open.
+//
+// The walk takes children in ascending order, so leaves too: where a group stands is one number, the next leaf.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "techniques/gears/shaders/walk.glsl"
+
+
+layout(push_constant) uniform Push { WalkTreeConstants pc; };
+
+const uint DEPTH = 12u;
+
+// Groups that cost much are neighbours; a device that deals its threads contiguous work would leave them all to one.
+// So take chunks of 16 groups from 64 places in turn.
+uint interleaved(uint n) {
+  uint columns = ((pc.groups + 15u) / 16u + 63u) / 64u, chunk = n / 16u;
+  return ((chunk % 64u) * columns + chunk / 64u) * 16u + n % 16u;
+}
+
+uint first_leaf_below(uint node) {
+  for (uint d = 0u; d < DEPTH; d++) node = node < pc.first_leaf ? node * SG + 1u : node;
+  return node - pc.first_leaf;
+}
+uint last_leaf_below(uint node) {
+  for (uint d = 0u; d < DEPTH; d++) node = node < pc.first_leaf ? node * SG + SG : node;
+  return node - pc.first_leaf;
+}
+
+// Walks on from leaf `start`; returns where to go on, or 0xffffffff when done.
+uint walk(uint start) {
+  uint first_child[DEPTH], pending[DEPTH];              // per level: a bit for each child to visit
+  uint leaf_first[LEAF_BATCH + 1u], leaf_mask[LEAF_BATCH + 1u];   // leaves to rasterise: a bit per child
+  uint node = 0u;
+  int top = -1;
+  bool more = true;
+  do {
+    uint parents = 0u, found = 0u;
+    do {
+      uint first = node * SG + 1u, child = first + gl_SubgroupInvocationID;
+      bool above_leaves = first >= pc.first_leaf;
+      vec4 a = pc.boxes.at[child * 2u], b = pc.boxes.at[child * 2u + 1u];
+      uint rect;
+      bool hit = touches(a.xyz, vec3(a.w, b.xy), rect);
+      if (RESUMED) {
+        hit = hit && last_leaf_below(child) >= start;
+        turns += DEPTH;
+      }
+      uint m = subgroupBallot(hit).x;
+      leaf_first[parents] = first;
+      leaf_mask[parents] = m;
+      bool take = above_leaves && m != 0u, push = !above_leaves && m != 0u;
+      parents += take ? 1u : 0u;
+      found += take ? uint(bitCount(m)) : 0u;
+      top += push ? 1 : 0;
+      int at = max(top, 0);
+      first_child[at] = push ? first : first_child[at];
+      uint bits = push ? m : pending[at];
+      more = top >= 0;
+      node = first_child[at] + uint(findLSB(more ? bits : 1u));
+      bits &= bits - 1u;
+      pending[at] = bits;
+      top -= more && bits == 0u ? 1 : 0;
+      turns++;
+      if (COUNTING != 0u) nodes++;
+    } while (more && found < LEAF_BATCH && turns < TURN_LIMIT);
+
+    bool full = false;
+    if (found > 0u) {
+      uint i = 0u, left = leaf_mask[0];
+      do {
+        uint leaf = leaf_first[i] + uint(findLSB(left)) - pc.first_leaf;
+        rasterise_slots(pc.triangles, leaf * SG + gl_SubgroupInvocationID, true, false);
+        left &= left - 1u;
+        i += left == 0u ? 1u : 0u;
+        left = left == 0u ? leaf_mask[i] : left;
+        turns++;
+        found--;
+        full = all_blocked();
+        if (COUNTING != 0u) leaves++;
+      } while (found > 0u && !full);
+    }
+    more = more && !full;
+    if (COUNTING != 2u && more) update_open();
+  } while (more && turns < TURN_LIMIT);
+  return more ? first_leaf_below(node) : 0xffffffffu;
+}
+
+void main() {
+  uint n = linear_group();
+  uint g = RESUMED ? n : interleaved(n);
+  if (n >= pc.work_groups || g >= pc.groups) return;
+  if (RESUMED) g = pc.resume.at[pc.read_list * pc.groups + n];
+  begin_group(g, pc.frame, pc.slots);
+  if (BEGIN)
+    block_horizon(pc.frame.f.position.at[pixel].xyz, pc.frame.f.normal.at[pixel].xyz, pc.frame.f);
+  else
+    load_mask(pc.masks);
+  if (LIST) do_list(pc.triangles, pc.list, pc.list_begin, pc.list_end);
+  if (WALK) {
+    if (!BEGIN && COUNTING != 2u) update_open();
+    uint next = 0xffffffffu;
+    if (!all_blocked()) next = walk(RESUMED ? pc.resume.at[2u * pc.groups + g] : 0u);
+    if (next != 0xffffffffu && gl_SubgroupInvocationID == 0u) {
+      pc.resume.at[(1u - pc.read_list) * pc.groups + atomicAdd(pc.header.h.resume_count, 1u)] = g;
+      pc.resume.at[2u * pc.groups + g] = next;
+    }
+  }
+  store_mask(pc.masks);
+  add_statistics(pc.header);
+}

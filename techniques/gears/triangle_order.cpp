@@ -1,0 +1,132 @@
+#include "techniques/gears/triangle_order.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/parallel.h"
+#include "samples/view_samples.h"
+
+namespace penumbra::gears {
+namespace {
+
+constexpr std::size_t max_outside = 32;
+constexpr float outside_share = 0.25f;   // of the scene's diagonal
+
+struct Item {
+  Vec3f center;
+  uint32_t triangle = 0;
+};
+
+uint64_t spread(uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffff;
+  x = (x | x << 16) & 0x1f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+Box centers(const Item* begin, const Item* end) {
+  Box box;
+  for (const Item* i = begin; i != end; ++i) box.extend(i->center);
+  return box;
+}
+
+void sort_by_morton(std::vector<Item>& items) {
+  const Box box = centers(items.data(), items.data() + items.size());
+  const Vec3f size = box.hi - box.lo;
+  const float scale = 2097151.0f / std::max({size.x, size.y, size.z, 1e-30f});
+  std::vector<std::pair<uint64_t, uint32_t>> keys(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Vec3f q = (items[i].center - box.lo) * scale;
+    keys[i] = {spread(static_cast<uint64_t>(q.x)) | spread(static_cast<uint64_t>(q.y)) << 1 |
+                   spread(static_cast<uint64_t>(q.z)) << 2,
+               items[i].triangle};
+  }
+  std::ranges::sort(keys);
+  for (std::size_t i = 0; i < items.size(); ++i) items[i].triangle = keys[i].second;
+}
+
+// Cuts [begin, end) into parts of `capacity` items, binary cuts at the middle part, then each part into parts of
+// capacity / arity, down to leaves.
+void cut(Item* begin, Item* end, std::size_t capacity, std::size_t arity) {
+  const std::size_t count = static_cast<std::size_t>(end - begin);
+  if (count <= arity) return;
+  if (count <= capacity) return cut(begin, end, capacity / arity, arity);
+  const std::size_t parts = (count + capacity - 1) / capacity, left = (parts + 1) / 2 * capacity;
+  const Box box = centers(begin, end);
+  const Vec3f size = box.hi - box.lo;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  Item* const middle = begin + left;
+  std::nth_element(begin, middle, end, [axis](const Item& a, const Item& b) {
+    return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.triangle < b.triangle;
+  });
+  if (count < 4096) {
+    cut(begin, middle, capacity, arity);
+    cut(middle, end, capacity, arity);
+    return;
+  }
+  parallel_for(2, 1, [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      i == 0 ? cut(begin, middle, capacity, arity) : cut(middle, end, capacity, arity);
+  });
+}
+
+// Leaves out of `items` the triangles that are to stay outside the tree.
+std::vector<uint32_t> take_outside(const Geometry& geometry, std::vector<Item>& items) {
+  struct Large {
+    float extent;
+    uint32_t triangle;
+  };
+  std::vector<Large> large;
+  const float limit = outside_share * geometry.bounds.diagonal();
+  for (const Item& item : items) {
+    Box box;
+    for (int k = 0; k < 3; ++k) box.extend(geometry.corner(item.triangle, k));
+    if (box.diagonal() > limit) large.push_back({box.diagonal(), item.triangle});
+  }
+  std::ranges::sort(large, [](const Large& a, const Large& b) {
+    return a.extent != b.extent ? a.extent > b.extent : a.triangle < b.triangle;
+  });
+  large.resize(std::min(large.size(), max_outside));
+  std::vector<uint32_t> outside;
+  for (const Large& l : large) outside.push_back(l.triangle);
+  std::ranges::sort(outside);
+  std::erase_if(items, [&](const Item& i) { return std::ranges::binary_search(outside, i.triangle); });
+  return outside;
+}
+
+}  // namespace
+
+TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, GearsParams::TriangleOrder kind) {
+  std::vector<Item> items(geometry.triangle_count());
+  parallel_for(items.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      items[t] = {(geometry.corner(t, 0) + geometry.corner(t, 1) + geometry.corner(t, 2)) * (1.0f / 3.0f),
+                  static_cast<uint32_t>(t)};
+  });
+  const std::vector<uint32_t> outside = take_outside(geometry, items);
+  TriangleOrder order;
+  const uint32_t count = static_cast<uint32_t>(items.size());
+  const uint32_t leaves = std::max((count + arity - 1) / arity, 1u);
+  order.leaf_count = (leaves + arity - 1) / arity * arity;   // siblings all exist, empty where there is nothing
+  order.tree_slots = order.leaf_count * arity;
+  // At least one level of inner nodes; all of them exist, so the tree ends after the last leaf's siblings.
+  std::size_t capacity = arity;
+  for (uint32_t level = 1; order.first_leaf == 0 || level < order.leaf_count;) {
+    order.first_leaf += level;
+    level *= arity;
+    capacity *= arity;
+  }
+  order.node_count = order.first_leaf + order.leaf_count;
+  if (kind == GearsParams::TriangleOrder::morton)
+    sort_by_morton(items);
+  else if (!items.empty())
+    cut(items.data(), items.data() + items.size(), capacity / arity, arity);
+  order.slots.assign(order.tree_slots, no_triangle);
+  for (std::size_t i = 0; i < items.size(); ++i) order.slots[i] = items[i].triangle;
+  order.slots.insert(order.slots.end(), outside.begin(), outside.end());
+  return order;
+}
+
+}  // namespace penumbra::gears
