@@ -16,7 +16,7 @@ uint32_t Walker::triangle_turns(const FrameState& state) const {
   const MaskLayout& m = state.layout;
   if (m.grid) return static_cast<uint32_t>(m.pitch == 64 ? m.rows : m.words) + 2;
   const uint32_t samples = static_cast<uint32_t>(std::min(m.samples, 32));
-  return static_cast<uint32_t>(m.words) * (samples + groups_for(samples, state.lanes) + 2) + 2;
+  return static_cast<uint32_t>(m.words) * (samples + samples / state.lanes + 3) + 2;
 }
 
 uint32_t Walker::leaf_batch(const FrameState& state) const {
