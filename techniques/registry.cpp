@@ -2,6 +2,7 @@
 
 #include "techniques/gears/gears.h"
 #include "techniques/ray_tracing/ray_tracing.h"
+#include "techniques/shadow_map/shadow_map.h"
 
 namespace penumbra {
 
@@ -9,6 +10,7 @@ namespace penumbra {
 Registry all_techniques() {
   return {
       ray_tracing_technique(),
+      shadow_map_technique(),
       gears_technique(),
   };
 }

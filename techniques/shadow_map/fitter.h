@@ -1,0 +1,64 @@
+// Decides, per frame, what each depth map covers: reductions of the view samples on the device, then matrices
+// in double precision on the host. The reductions' results are a few hundred bytes; they are the only thing
+// read back.
+#pragma once
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/pipeline.h"
+#include "technique/technique.h"
+#include "techniques/shadow_map/light_space.h"
+#include "techniques/shadow_map/params.h"
+
+namespace penumbra::shadow_map {
+
+inline constexpr int max_layers = 8;
+
+struct FittedLayer {
+  LightFrame frame;
+  Mat4d space_from_world;  // light space before cropping
+  Extent extent;           // what it covers there
+  Mat4d clip_from_world;
+  double view_lo = 0, view_hi = INFINITY;
+  bool used = true;  // false: no view sample looks into it, it need not be drawn
+};
+
+struct Fitted {
+  LightPoint light;
+  bool six_faces = false;
+  std::vector<FittedLayer> layers;
+};
+
+class Fitter {
+ public:
+  explicit Fitter(const Params& params) : params_(params) {}
+  void setup(gpu::Device& device);
+  // Passes "fit_samples" (view samples' box), "fit_bounds" (per layer; once more when it takes six faces),
+  // "fit" (host).
+  const Fitted& run(const Case& c, const ViewSamples& view_samples, gpu::PassRecorder& passes);
+  const Fitted& result() const { return fitted_; }
+  uint64_t bytes() const { return queries_.bytes() + bounds_.bytes() + read_back_.bytes(); }
+
+ private:
+  void reset(const Case& c);
+  void fit_scene(const Case& c);
+  void aim(const Case& c);  // frames and spaces of one map, or of cascades
+  void aim_faces();         // of six faces
+  void add_layer(Vec3d forward, Vec3d hint);
+  bool needs_sample_box() const;
+  void query_layers();
+  void query(int slot, const Mat4d& space, double view_lo, double view_hi, double limit);
+  void reduce(const char* pass, int slots, const ViewSamples& view_samples, gpu::PassRecorder& passes);
+  void cover_samples();
+  void crop_layers(const Case& c);
+
+  Params params_;
+  Fitted fitted_;
+  Box sample_box_;
+  double view_lo_ = 0, view_hi_ = 0;
+  double limit_ = 0;  // of |x/w| and |y/w|
+  gpu::ComputePipeline reduce_;
+  gpu::Buffer queries_, bounds_, read_back_;
+};
+
+}  // namespace penumbra::shadow_map

@@ -1,0 +1,151 @@
+#include "techniques/shadow_map/light_space.h"
+
+#include <bit>
+#include <numbers>
+
+namespace penumbra::shadow_map {
+namespace {
+
+Mat4d from_rows(Vec4d r0, Vec4d r1, Vec4d r2, Vec4d r3) {
+  Mat4d m;
+  for (int c = 0; c < 4; ++c) m[c] = {r0[c], r1[c], r2[c], r3[c]};
+  return m;
+}
+
+Vec4d row(Vec3d v, double w) { return {v.x, v.y, v.z, w}; }
+
+Mat4d transposed(const Mat4d& m) { return from_rows(m[0], m[1], m[2], m[3]); }
+
+Vec4f to_float4(Vec4d v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(v.w)};
+}
+
+// Undoes the order-preserving encoding of fit.comp.
+double decoded(uint u) { return std::bit_cast<float>(u & 0x80000000U ? u & 0x7fffffffU : ~u); }
+
+// Room on both sides: an extent without size (one sample, a plane seen edge-on) still gets a map.
+void pad(double& lo, double& hi, double relative, double least) {
+  const double size = std::max({hi - lo, 1e-6 * std::max(std::abs(lo), std::abs(hi)), least});
+  const double middle = 0.5 * (lo + hi);
+  lo = std::min(lo, middle - 0.5 * size) - relative * size;
+  hi = std::max(hi, middle + 0.5 * size) + relative * size;
+}
+
+double rounded_up(double size) { return std::exp2(std::ceil(4 * std::log2(size)) / 4); }
+
+}  // namespace
+
+Vec4f LightPoint::device_towards() const { return to_float4(towards); }
+Vec4f LightPoint::device_emission() const { return to_float4(row(axis, cosine)); }
+
+LightPoint light_point(const Light& light) {
+  const Vec3d direction = normalize(Vec3d(light.direction));
+  const Vec4d position = row(Vec3d(light.center), 1);
+  switch (light.kind) {
+    case LightKind::directional:
+      return {row(-direction, 0), direction, -1};
+    case LightKind::spot: {
+      const double cosine = std::cos(light.cone_degrees * std::numbers::pi / 180);
+      return {position, direction, cosine, cosine * widest_tangent > std::sqrt(1 - cosine * cosine)};
+    }
+    case LightKind::rectangle:
+    case LightKind::textured_rectangle:
+      return {position, direction, 0};
+    default:
+      return {position, direction, -1};
+  }
+}
+
+LightFrame light_frame(Vec3d forward, Vec3d hint) {
+  forward = normalize(forward);
+  Vec3d down = hint - forward * dot(hint, forward);
+  if (!(length(down) > 1e-6 * length(hint))) {
+    const Vec3d a{std::abs(forward.x), std::abs(forward.y), std::abs(forward.z)};
+    const Vec3d axis = a.x <= a.y && a.x <= a.z ? Vec3d{1, 0, 0}
+                       : a.y <= a.z             ? Vec3d{0, 1, 0}
+                                                : Vec3d{0, 0, 1};
+    down = axis - forward * dot(axis, forward);
+  }
+  down = normalize(down);
+  return {cross(down, forward), down, forward};
+}
+
+Mat4d light_from_world(const LightPoint& light, const LightFrame& frame) {
+  const auto& [r, d, f] = frame;
+  if (light.at_infinity()) return from_rows(row(r, 0), row(d, 0), row(f, 0), {0, 0, 0, 1});
+  const Vec3d p = light.towards.xyz();
+  return from_rows(row(r, -dot(r, p)), row(d, -dot(d, p)), {0, 0, 0, -1}, row(f, -dot(f, p)));
+}
+
+Extent decode(const SampleBounds& b) {
+  Extent e;
+  e.whole = b.outside != 0;
+  if (b.lo[0] == 0xffffffffU) return e;
+  for (int c = 0; c < 3; ++c) e.lo[c] = decoded(b.lo[c]), e.hi[c] = decoded(~b.hi[c]);
+  e.view_lo = decoded(b.lo[3]), e.view_hi = decoded(~b.hi[3]);
+  return e;
+}
+
+std::optional<Extent> extent_of(const Box& box, const Mat4d& light_from_world, double limit) {
+  Extent e;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3d corner{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z};
+    const Vec4d p = light_from_world * row(corner, 1);
+    if (p.w <= 0 || std::abs(p.x) > limit * p.w || std::abs(p.y) > limit * p.w) return {};
+    e.extend(p.xyz() / p.w);
+  }
+  return e;
+}
+
+Mat4d crop(const Extent& e, double map_size, double border, double least_depth) {
+  Extent p = e;
+  for (int c = 0; c < 2; ++c) pad(p.lo[c], p.hi[c], 0, 1e-9);
+  pad(p.lo.z, p.hi.z, 1e-2, least_depth);
+  // Half the map's width in texels holds half of the extent; the border's texels lie outside.
+  const double inner = std::max(map_size - 2 * border, 0.5 * map_size) / map_size;
+  Mat4d m;
+  for (int c = 0; c < 2; ++c) {
+    m[c][c] = 2 * inner / (p.hi[c] - p.lo[c]);
+    m[3][c] = -0.5 * (p.lo[c] + p.hi[c]) * m[c][c];
+  }
+  m[2][2] = 1 / (p.hi.z - p.lo.z);
+  m[3][2] = -p.lo.z * m[2][2];
+  return m;
+}
+
+Extent snapped(const Extent& e, double map_size, double border) {
+  Extent s = e;
+  for (int c = 0; c < 2; ++c) {
+    pad(s.lo[c], s.hi[c], 0, 1e-9);
+    const double inner = std::max(map_size - 2 * border, 0.5 * map_size);
+    // One texel of room, so that moving the corner to a whole texel keeps all inside.
+    const double size = rounded_up((s.hi[c] - s.lo[c]) * inner / (inner - 1));
+    const double texel = size / inner;
+    s.lo[c] = std::floor(s.lo[c] / texel) * texel;
+    s.hi[c] = s.lo[c] + size;
+  }
+  return s;
+}
+
+MapLayer make_layer(const Mat4d& clip_from_world, const LightPoint& light, const LightFrame& frame,
+                    double view_lo, double view_hi) {
+  const Mat4d world_from_clip = inverse(clip_from_world);
+  MapLayer layer{};
+  layer.clip_from_world = to_float(clip_from_world);
+  layer.plane_from_world = to_float(transposed(world_from_clip));
+  // Distance along the axis of the point that (clip x, clip y, depth, 1) unprojects to.
+  const double offset = light.at_infinity() ? 0 : -dot(frame.forward, light.towards.xyz());
+  const Vec4d linear = row(frame.forward, offset);
+  Vec4d numerator, denominator;
+  for (int c = 0; c < 4; ++c) {
+    for (int i = 0; i < 4; ++i) numerator[c] += linear[i] * world_from_clip[c][i];
+    denominator[c] = world_from_clip[c].w;
+  }
+  layer.linear_numerator = to_float4(numerator);
+  layer.linear_denominator = to_float4(denominator);
+  layer.linear_from_world = to_float4(linear);
+  layer.view_range = {static_cast<float>(view_lo), static_cast<float>(view_hi), 0, 0};
+  return layer;
+}
+
+}  // namespace penumbra::shadow_map

@@ -1,0 +1,68 @@
+// The light's view in double precision: no device, no buffers. A light space is a projective map in which
+// light rays are parallel to z: x/w and y/w say where in the map, z/w how deep, growing away from the light.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "core/vec.h"
+#include "scene/light.h"
+#include "techniques/shadow_map/params.h"
+#include "techniques/shadow_map/shaders/shared.h"
+
+namespace penumbra::shadow_map {
+
+// Widest |x/w| that one frustum takes before six faces are used: a full opening angle of 127 degrees.
+inline constexpr double widest_tangent = 2;
+
+// The light as a map sees it: one position or one direction.
+struct LightPoint {
+  Vec4d towards;      // position, 1; or the unit direction towards a light at infinity, 0
+  Vec3d axis;         // spot: the cone's axis; directional: the way light travels; rectangle: its front
+  double cosine;      // of the half angle about the axis in which light leaves; -1: everywhere
+  bool spot = false;  // the cone is narrow enough for one frustum about the axis (widest_tangent)
+  bool at_infinity() const { return towards.w == 0; }
+  Vec4f device_towards() const;
+  Vec4f device_emission() const;
+};
+// Area lights are seen from their centre.
+LightPoint light_point(const Light& light);
+
+// Right-handed: right x down = forward, so that what is drawn is not mirrored.
+struct LightFrame {
+  Vec3d right, down, forward;
+};
+// `hint` projected onto the map points along `down` (along any axis when it is parallel to `forward`).
+LightFrame light_frame(Vec3d forward, Vec3d hint);
+
+// World to light space. Directional: rigid, z = distance along the light, w = 1. Else w = distance along the
+// axis and z/w = -1/w, which any crop in z turns into the depth of a near and a far plane.
+Mat4d light_from_world(const LightPoint& light, const LightFrame& frame);
+
+// Smallest and largest x/w, y/w and z/w (and view depth) of what a map must cover.
+struct Extent {
+  Vec3d lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
+  double view_lo = INFINITY, view_hi = -INFINITY;
+  bool whole = true;  // false: some view samples were outside what was asked for
+  bool empty() const { return !(lo.x <= hi.x); }
+  void extend(Vec3d p) { lo = min(lo, p), hi = max(hi, p); }
+};
+Extent decode(const SampleBounds& bounds);
+
+// The extent of a box's corners in a light space; nothing when a corner is not in front of the light, or so
+// far from the axis (|x/w| or |y/w| > limit) that one map would be mostly waste.
+std::optional<Extent> extent_of(const Box& box, const Mat4d& light_from_world, double limit);
+
+// Scale and offset so that `e` fills the map but for `border` texels on each side, and depth [0, 1]. Depths
+// closer together than `least_depth` are given that much room.
+Mat4d crop(const Extent& e, double map_size, double border, double least_depth);
+
+// The extent with sizes in x and y rounded up to powers of 2^(1/4) (of the unit of light space) and its
+// corner moved to a whole texel of that size: texels keep their places while what they cover moves [Valient
+// 2008; Engel 2006].
+Extent snapped(const Extent& e, double map_size, double border);
+
+// All that the device needs of one layer.
+MapLayer make_layer(const Mat4d& clip_from_world, const LightPoint& light, const LightFrame& frame,
+                    double view_lo, double view_hi);
+
+}  // namespace penumbra::shadow_map

@@ -1,0 +1,26 @@
+// From depth maps to visibility.
+#pragma once
+#include "gpu/pipeline.h"
+#include "technique/technique.h"
+#include "techniques/shadow_map/depth_maps.h"
+
+namespace penumbra::shadow_map {
+
+// `count` points spread over the unit disc by best candidates: the same on every platform.
+std::vector<Vec2f> disc_points(int count);
+
+class Lookup {
+ public:
+  explicit Lookup(const Params& params) : params_(params) {}
+  void setup(gpu::Device& device, gpu::PassRecorder& passes);
+  // Pass "lookup".
+  void run(const RenderInput& in, const Fitted& fitted, const DepthMaps& maps, gpu::PassRecorder& passes);
+  uint64_t bytes() const { return disc_.bytes(); }
+
+ private:
+  Params params_;
+  gpu::ComputePipeline frustum_, faces_;
+  gpu::Buffer disc_;
+};
+
+}  // namespace penumbra::shadow_map

@@ -1,0 +1,34 @@
+// Which layer a receiver uses, and where it falls in it.
+
+// Cascades are chosen by view depth, faces by the dominant axis of the direction from the light (+x -x +y -y +z -z).
+uint layer_of(float view_depth, vec3 from_light) {
+  if (faces) {
+    const vec3 a = abs(from_light);
+    const uint axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+    return 2 * axis + (from_light[axis] < 0 ? 1 : 0);
+  }
+  uint layer = 0;
+  while (layer + 1 < push.layer_count && view_depth >= push.layers.at[layer].view_range.y) ++layer;
+  return layer;
+}
+
+struct Receiver {
+  uint layer;
+  vec2 texel;    // continuous texel coordinates: texel i covers [i, i + 1)
+  float depth;   // in the map's depth, bias included
+  vec2 slope;    // depth that the receiver's plane gains per texel in x and y
+};
+
+// `point` is the receiver, already moved towards the light.
+Receiver locate(uint layer, vec3 point, vec3 normal) {
+  const vec4 clip = push.layers.at[layer].clip_from_world * vec4(point, 1);
+  const vec3 ndc = clip.xyz / clip.w;
+  // The plane a x + b y + c z + d = 0 gains -a / c in z per unit of x. Edge-on planes are held to the map's whole range.
+  const vec4 plane = push.layers.at[layer].plane_from_world * vec4(normal, -dot(normal, point));
+  const vec2 slope = abs(plane.z) > 1e-6 * (abs(plane.x) + abs(plane.y)) ? -plane.xy / plane.z : vec2(0);
+  return Receiver(layer, (ndc.xy * 0.5 + 0.5) * map_size, ndc.z, clamp(slope * (2.0 / map_size), -1, 1));
+}
+
+float depth_at(ivec2 texel, uint layer) {
+  return texelFetch(depth_map, ivec3(clamp(texel, ivec2(0), ivec2(map_size - 1)), layer), 0).r;
+}
