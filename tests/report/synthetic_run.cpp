@@ -148,12 +148,12 @@ json header(const std::string& name, const json& scenes) {
       {"schema_version", 1},
       {"config", {{"name", name}, {"reference", {{"light_samples", 1024}}}}},
       {"program", {{"version", "0.1.0"}, {"commit", "0123abcd"}, {"compiler", "GNU 12.2.0"}}},
-      {"cpu", "AMD EPYC 9B14"},
-      {"cores", 2},
-      {"os", "Debian GNU/Linux 12 (bookworm)"},
+      {"cpu", {{"model", "AMD EPYC 9B14"}, {"cores", 2}}},
+      {"memory_bytes", 8ull << 30},
+      {"os", {{"name", "Debian GNU/Linux 12 (bookworm)"}}},
       {"vulkan",
-       {{"device", "llvmpipe (LLVM 15.0.6, 256 bits)"}, {"driver", "lavapipe"}, {"api_version", "1.3.230"}}},
-      {"start_time", "2026-11-22T16:00:00Z"},
+       {{"name", "llvmpipe (LLVM 15.0.6, 256 bits)"}, {"driver", "lavapipe"}, {"api_version", "1.3.230"}}},
+      {"started", "2026-11-22T16:00:00Z"},
       {"load", {0.4, 0.5, 0.3}},
       {"scenes", scenes}};
 }
@@ -231,11 +231,12 @@ json write_synthetic_run(const fs::path& folder, const SyntheticRun& o) {
   json points = json::array(), reports = json::array();
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     const auto& [name, spheres] = scenes[s];
-    reports.push_back(
-        {{"name", name},
-         {"triangles", 69666},
-         {"view_samples_ms", 3.2},
-         {"hygiene", {{"degenerate_triangles", 0}, {"duplicate_vertices", 12}, {"open_edges", 0}}}});
+    reports.push_back({{"name", name},
+                       {"triangles", 69666},
+                       {"view_samples_ms", 3.2},
+                       {"meshes",
+                        {json{{"name", "ball"}, {"closed", true}, {"open_edges", 0}},
+                         json{{"name", "plane"}, {"closed", false}, {"open_edges", 4}}}}});
     const std::string truth_folder = fmt::format("images/reference-{}", s);
     const std::vector<float> truth = render(o, spheres, 24, 1, 0);
     if (o.pictures) write_pictures(folder, truth_folder, o, spheres, truth);

@@ -41,7 +41,7 @@
   };
   P.value_text = (value) => {
     if (value === null || value === undefined) return "–";
-    if (Array.isArray(value)) return value.map((v) => P.value_text(v)).join(" × ");
+    if (Array.isArray(value)) return value.map((v) => P.value_text(v)).join(value.length === 2 && value.every(Number.isInteger) ? " × " : ", ");
     if (typeof value === "number") return P.number(value, 6);
     if (typeof value === "object") return JSON.stringify(value);
     return String(value);

@@ -3,27 +3,22 @@
   P.columns = P.make_columns();
   P.shown = P.points;
   const at = (id) => document.getElementById(id);
-  const find = (names) => {   // the first of these names anywhere in the run's record
-    const search = (value) => {
-      if (value === null || typeof value !== "object") return undefined;
-      for (const name of names) if (typeof value[name] === "string" || typeof value[name] === "number") return value[name];
-      for (const [key, v] of Object.entries(value)) if (key !== "config" && key !== "scenes") {
-        const found = search(v);
-        if (found !== undefined) return found;
-      }
-      return undefined;
-    };
-    return search(P.data.run ?? {});
-  };
+  const run = P.data.run ?? {};
+  // A part of the run's record as one text: its own, or that of the first of these names in it.
+  const text_of = (part, ...names) => (typeof part === "string" ? part : names.map((name) => part?.[name]).find((v) => typeof v === "string"));
 
-  const machine = [find(["cpu", "cpu_model"]), find(["device_name", "device", "vulkan_device"]), find(["os"]), find(["start_time", "started"])];
-  at("machine").textContent = machine.filter(Boolean).map(String).join(" · ");
+  const cores = run.cpu?.usable_cores ?? run.cpu?.cores ?? run.cores;
+  const machine = [text_of(run.vulkan, "name", "device"), text_of(run.cpu, "model"), cores ? `${cores} cores` : null,
+    text_of(run.os, "name"), run.started ?? run.start_time];
+  at("machine").textContent = machine.filter(Boolean).join(" · ");
   const order = ["ok", "unsupported", "failed", "timeout"];
   at("counts").replaceChildren(...[...P.statuses].sort((a, b) => order.indexOf(a) - order.indexOf(b)).map((status) => P.element("li", { class: `status ${status}` },
     P.element("span", { class: "dot" }), P.element("b", {}, String(P.points.filter((p) => p.status === status).length)), ` ${status}`)),
   ...[[P.techniques.length, "technique"], [P.scenes.length, "scene"]].map(([n, word]) => P.element("li", {}, P.element("b", {}, String(n)), ` ${word}${n === 1 ? "" : "s"}`)));
+  if (run.complete === false)
+    at("warnings").append(P.element("p", { class: "notice" }, `The run had not ended: ${P.points.length}${typeof run.points === "number" ? ` of ${run.points}` : ""} points.`));
   if (P.data.warnings?.length)
-    at("warnings").replaceChildren(P.element("details", { class: "notice" }, P.element("summary", {}, `${P.data.warnings.length} pictures could not be shown`),
+    at("warnings").append(P.element("details", { class: "notice" }, P.element("summary", {}, `${P.data.warnings.length} pictures could not be shown`),
       P.element("ul", {}, ...P.data.warnings.map((w) => P.element("li", {}, w)))));
 
   const draw_legend = () => at("legend").replaceChildren(...P.techniques.map((technique) => P.element("button", {

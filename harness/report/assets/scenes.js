@@ -1,14 +1,23 @@
 // Overview, scenes and provenance: what the run says about itself, shown as it stands.
 (() => {
   const is_object = (v) => v !== null && typeof v === "object" && !Array.isArray(v);
-  const leaf = (v) => (typeof v === "number" ? P.number(v, 6) : P.value_text(v));
+  const leaf = (key, v) => (typeof v !== "number" ? P.value_text(v) : key.endsWith("_bytes") ? P.bytes(v) : P.number(v, 6));
+  const name_of = (key) => key.replace(/_bytes$/, "").replaceAll("_", " ");
 
-  // Nested objects become nested lists of names and values.
-  const tree = (value) => {
+  const is_flat = (v) => is_object(v) && !Object.values(v).some((x) => is_object(x) || (Array.isArray(x) && x.some(is_object)));
+  const rows = (list) => {
+    const keys = P.unique(list.flatMap(Object.keys));
+    return P.element("div", { class: "scroll-x" }, P.element("table", { class: "plain" },
+      P.element("thead", {}, P.element("tr", {}, ...keys.map((k) => P.element("th", { scope: "col" }, name_of(k))))),
+      P.element("tbody", {}, ...list.map((row) => P.element("tr", {}, ...keys.map((k) => P.element("td", {}, leaf(k, row[k]))))))));
+  };
+  // Nested objects become nested lists of names and values, lists of flat objects tables.
+  const tree = (value, key = "") => {
     if (is_object(value)) return P.element("dl", { class: "pairs" }, ...Object.entries(value).flatMap(([k, v]) =>
-      [P.element("dt", {}, k.replaceAll("_", " ")), P.element("dd", {}, is_object(v) || (Array.isArray(v) && v.some(is_object)) ? tree(v) : leaf(v))]));
-    if (Array.isArray(value) && value.some(is_object)) return P.element("ol", {}, ...value.map((v) => P.element("li", {}, tree(v))));
-    return document.createTextNode(leaf(value));
+      [P.element("dt", {}, name_of(k)), P.element("dd", {}, tree(v, k))]));
+    if (Array.isArray(value) && value.length > 1 && value.every(is_flat)) return rows(value);
+    if (Array.isArray(value) && value.some(is_object)) return P.element("div", {}, ...value.map((v) => tree(v)));
+    return document.createTextNode(leaf(key, value));
   };
 
   const range_text = (values, digits) => {
