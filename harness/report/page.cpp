@@ -65,9 +65,8 @@ std::string index_html(std::string_view title) {
 
 std::string report_script() {
   std::string script = "\"use strict\";\n";
-  for (const char* name : {"model.js", "format.js", "filter.js", "svg.js", "chart.js", "plots.js", "table.js",
-                           "error_map.js", "zoom.js", "viewer.js", "details.js", "scenes.js", "main.js"})
-    script += report_asset(name);
+  for (const Asset& asset : report_assets())  // in the order in which CMakeLists.txt names them
+    if (asset.name.ends_with(".js")) script += asset.content;
   return script;
 }
 

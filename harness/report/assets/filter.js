@@ -10,15 +10,31 @@
     listeners.forEach((callback) => callback());
   };
 
-  const haystack = (p) => p.haystack ??= [p.technique, P.technique_label(p.technique), p.scene, p.status, p.message ?? "", p.id ?? "",
-    ...Object.entries(p.params).map(([k, v]) => `${k}=${P.value_text(v).replaceAll(" ", "")}`)].join(" ").toLowerCase();
+  const haystack = (p) =>
+    (p.haystack ??= [
+      p.technique,
+      P.technique_label(p.technique),
+      p.scene,
+      p.status,
+      p.message ?? "",
+      p.id ?? "",
+      ...Object.entries(p.params).map(([k, v]) => `${k}=${P.value_text(v).replaceAll(" ", "")}`),
+    ]
+      .join(" ")
+      .toLowerCase());
 
   const comparisons = {
-    "=": (a, b) => a === b, "!=": (a, b) => a !== b, "<": (a, b) => a < b, ">": (a, b) => a > b,
-    "<=": (a, b) => a <= b, ">=": (a, b) => a >= b,
+    "=": (a, b) => a === b,
+    "!=": (a, b) => a !== b,
+    "<": (a, b) => a < b,
+    ">": (a, b) => a > b,
+    "<=": (a, b) => a <= b,
+    ">=": (a, b) => a >= b,
   };
-  const find_column = (name) => P.columns.find((c) => c.key === name) ??
-    P.columns.find((c) => c.key === `metrics.${name}`) ?? P.columns.find((c) => c.key === `metrics_matched.${name}`);
+  const find_column = (name) =>
+    P.columns.find((c) => c.key === name) ??
+    P.columns.find((c) => c.key === `metrics.${name}`) ??
+    P.columns.find((c) => c.key === `metrics_matched.${name}`);
 
   const compile_word = (word) => {
     const match = /^([\w.]+)(<=|>=|!=|=|<|>)(.*)$/.exec(word);
@@ -42,8 +58,16 @@
 
   P.apply_filter = () => {
     const { hidden, scene, status, text } = P.filter;
-    const tests = text.split(/\s+/).filter((word) => word !== "").map(compile_word);
-    return P.points.filter((p) => !hidden.has(p.technique) && (scene === "" || p.scene === scene) &&
-      (status === "" || p.status === status) && tests.every((test) => test(p)));
+    const tests = text
+      .split(/\s+/)
+      .filter((word) => word !== "")
+      .map(compile_word);
+    return P.points.filter(
+      (p) =>
+        !hidden.has(p.technique) &&
+        (scene === "" || p.scene === scene) &&
+        (status === "" || p.status === status) &&
+        tests.every((test) => test(p)),
+    );
   };
 })();

@@ -1,7 +1,12 @@
 // The results table. Only the rows in sight exist in the document, so ten thousand points cost no more than fifty.
 (() => {
-  const row_height = 33, margin_rows = 12, print_limit = 2000;
-  let columns = [], sorted = [], sort = { column: null, down: false }, focus = 0;
+  const row_height = 33,
+    margin_rows = 12,
+    print_limit = 2000;
+  let columns = [],
+    sorted = [],
+    sort = { column: null, down: false },
+    focus = 0;
   let scroller, table, body, count;
 
   const cell_text = (c, p) => {
@@ -13,9 +18,11 @@
     const value = (p) => sort.column.get(p);
     const [x, y] = [value(a), value(b)];
     const missing = (v) => v === null || v === undefined;
-    if (missing(x) || missing(y)) return missing(x) - missing(y) || a.index - b.index;   // last, either way
+    if (missing(x) || missing(y)) return missing(x) - missing(y) || a.index - b.index; // last, either way
     const numeric = P.axis_number(x) !== null && P.axis_number(y) !== null;
-    const order = numeric ? P.axis_number(x) - P.axis_number(y) : P.value_text(x).localeCompare(P.value_text(y), "en", { numeric: true });
+    const order = numeric
+      ? P.axis_number(x) - P.axis_number(y)
+      : P.value_text(x).localeCompare(P.value_text(y), "en", { numeric: true });
     return (sort.down ? -order : order) || a.index - b.index;
   };
 
@@ -26,22 +33,42 @@
   };
   const cell = (c, p) => {
     if (c.key === "technique")
-      return P.element("th", { scope: "row" }, P.element("button", { class: "open", tabindex: -1, title: "Details of this point" },
-        P.marker_icon(p.technique), cell_text(c, p)));
+      return P.element(
+        "th",
+        { scope: "row" },
+        P.element(
+          "button",
+          { class: "open", tabindex: -1, title: "Details of this point" },
+          P.marker_icon(p.technique),
+          cell_text(c, p),
+        ),
+      );
     if (c.key === "status")
-      return P.element("td", { class: `status ${p.status}`, title: p.message ?? null },
-        P.element("span", { class: "dot" }), p.status);
+      return P.element(
+        "td",
+        { class: `status ${p.status}`, title: p.message ?? null },
+        P.element("span", { class: "dot" }),
+        p.status,
+      );
     const interval = interval_text(c, p);
-    return P.element("td", { class: c.numeric ? "num" : null },
-      cell_text(c, p), interval ? P.element("small", { title: "95 % confidence interval of the median" }, interval) : null);
+    return P.element(
+      "td",
+      { class: c.numeric ? "num" : null },
+      cell_text(c, p),
+      interval ? P.element("small", { title: "95 % confidence interval of the median" }, interval) : null,
+    );
   };
 
   // A point without a result says why in place of its figures, which stand after the status.
   const cells_of = (p) => {
-    const at = columns.findIndex((c) => c.key === "status"), rest = columns.slice(at + 1);
-    if (!p.message || !rest.length || rest.some((c) => typeof c.get(p) === "number")) return columns.map((c) => cell(c, p));
-    return [...columns.slice(0, at + 1).map((c) => cell(c, p)),
-      P.element("td", { class: "message", colspan: rest.length, title: p.message }, p.message)];
+    const at = columns.findIndex((c) => c.key === "status"),
+      rest = columns.slice(at + 1);
+    if (!p.message || !rest.length || rest.some((c) => typeof c.get(p) === "number"))
+      return columns.map((c) => cell(c, p));
+    return [
+      ...columns.slice(0, at + 1).map((c) => cell(c, p)),
+      P.element("td", { class: "message", colspan: rest.length, title: p.message }, p.message),
+    ];
   };
 
   // Widths are fixed from the rows' texts (of many rows, from a sample), so that nothing jumps while scrolling.
@@ -50,46 +77,100 @@
     let longest = P.label_with_unit(c.key).length * 0.95 + 2.6;
     const stride = Math.ceil(P.points.length / 1000);
     for (let i = 0; i < P.points.length; i += stride) {
-      const p = P.points[i], interval = interval_text(c, p);
-      longest = Math.max(longest, cell_text(c, p).length + (interval ? interval.length * 0.8 + 2.5 : 0) + (c.key === "technique" ? 5 : 0));
+      const p = P.points[i],
+        interval = interval_text(c, p);
+      longest = Math.max(
+        longest,
+        cell_text(c, p).length +
+          (interval ? interval.length * 0.8 + 2.5 : 0) +
+          (c.key === "technique" ? 5 : 0),
+      );
     }
     return Math.min(longest, 46) + 1.8;
   };
 
-  const header = () => P.element("thead", {}, P.element("tr", { "aria-rowindex": 1 }, ...columns.map((c) => {
-    const on = sort.column === c;
-    return P.element("th", { scope: "col", class: c.numeric ? "num" : null, "aria-sort": on ? (sort.down ? "descending" : "ascending") : "none",
-      "data-key": c.key, title: `${c.group}: ${c.key}` },
-    P.element("button", { onclick: () => sort_by(c) }, P.label_with_unit(c.key),
-      P.element("span", { class: "arrow", "aria-hidden": "true" }, on ? (sort.down ? "▼" : "▲") : "")));
-  })));
+  const header = () =>
+    P.element(
+      "thead",
+      {},
+      P.element(
+        "tr",
+        { "aria-rowindex": 1 },
+        ...columns.map((c) => {
+          const on = sort.column === c;
+          return P.element(
+            "th",
+            {
+              scope: "col",
+              class: c.numeric ? "num" : null,
+              "aria-sort": on ? (sort.down ? "descending" : "ascending") : "none",
+              "data-key": c.key,
+              title: `${c.group}: ${c.key}`,
+            },
+            P.element(
+              "button",
+              { onclick: () => sort_by(c) },
+              P.label_with_unit(c.key),
+              P.element("span", { class: "arrow", "aria-hidden": "true" }, on ? (sort.down ? "▼" : "▲") : ""),
+            ),
+          );
+        }),
+      ),
+    );
 
-  const spacer = (rows) => P.element("tr", { class: "spacer", "aria-hidden": "true" },
-    P.element("td", { colspan: columns.length, style: `height:${rows * row_height}px` }));
+  const spacer = (rows) =>
+    P.element(
+      "tr",
+      { class: "spacer", "aria-hidden": "true" },
+      P.element("td", { colspan: columns.length, style: `height:${rows * row_height}px` }),
+    );
   const draw_rows = (everything = false) => {
     const first = everything ? 0 : Math.max(0, Math.floor(scroller.scrollTop / row_height) - margin_rows);
     const in_sight = Math.ceil((scroller.clientHeight || 600) / row_height) + 2 * margin_rows;
-    const last = everything ? Math.min(sorted.length, print_limit) : Math.min(sorted.length, first + in_sight);
+    const last = everything
+      ? Math.min(sorted.length, print_limit)
+      : Math.min(sorted.length, first + in_sight);
     const had_focus = body.contains(document.activeElement);
-    const rows = sorted.slice(first, last).map((p, i) => P.element("tr",
-      { tabindex: first + i === focus ? 0 : -1, "data-row": first + i, "data-point": p.index, "aria-rowindex": first + i + 2, class: p.status },
-      ...cells_of(p)));
-    body.replaceChildren(...(first ? [spacer(first)] : []), ...rows, ...(last < sorted.length && !everything ? [spacer(sorted.length - last)] : []));
+    const rows = sorted.slice(first, last).map((p, i) =>
+      P.element(
+        "tr",
+        {
+          tabindex: first + i === focus ? 0 : -1,
+          "data-row": first + i,
+          "data-point": p.index,
+          "aria-rowindex": first + i + 2,
+          class: p.status,
+        },
+        ...cells_of(p),
+      ),
+    );
+    body.replaceChildren(
+      ...(first ? [spacer(first)] : []),
+      ...rows,
+      ...(last < sorted.length && !everything ? [spacer(sorted.length - last)] : []),
+    );
     if (had_focus) body.querySelector(`[data-row="${focus}"]`)?.focus({ preventScroll: true });
   };
 
   const rebuild = () => {
     columns = P.columns.filter((c) => c.shown);
     table.style.width = `${columns.reduce((sum, c) => sum + (c.width ??= width_of(c)), 0)}ch`;
-    table.replaceChildren(P.element("caption", { class: "hidden" }, "One row per point"),
-      P.element("colgroup", {}, ...columns.map((c) => P.element("col", { style: `width:${c.width}ch` }))), header(), body);
+    table.replaceChildren(
+      P.element("caption", { class: "hidden" }, "One row per point"),
+      P.element("colgroup", {}, ...columns.map((c) => P.element("col", { style: `width:${c.width}ch` }))),
+      header(),
+      body,
+    );
     refresh();
   };
   const refresh = () => {
     sorted = sort.column ? [...P.shown].sort(compare) : P.shown;
     focus = Math.min(focus, Math.max(0, sorted.length - 1));
     table.setAttribute("aria-rowcount", sorted.length + 1);
-    count.textContent = sorted.length === P.points.length ? `${sorted.length} points` : `${sorted.length} of ${P.points.length} points`;
+    count.textContent =
+      sorted.length === P.points.length
+        ? `${sorted.length} points`
+        : `${sorted.length} of ${P.points.length} points`;
     draw_rows();
   };
   const sort_by = (c) => {
@@ -101,7 +182,8 @@
 
   const move_focus = (to) => {
     focus = Math.min(Math.max(0, to), sorted.length - 1);
-    const head = table.tHead.offsetHeight, y = focus * row_height;
+    const head = table.tHead.offsetHeight,
+      y = focus * row_height;
     if (y < scroller.scrollTop) scroller.scrollTop = y;
     else if (y + row_height + head > scroller.scrollTop + scroller.clientHeight)
       scroller.scrollTop = y + row_height + head - scroller.clientHeight;
@@ -111,8 +193,16 @@
   const on_key = (event) => {
     const row = event.target.closest("tr[data-row]");
     if (!row) return;
-    const page = Math.floor(scroller.clientHeight / row_height) - 2, at = Number(row.dataset.row);
-    const steps = { ArrowDown: at + 1, ArrowUp: at - 1, PageDown: at + page, PageUp: at - page, Home: 0, End: sorted.length - 1 };
+    const page = Math.floor(scroller.clientHeight / row_height) - 2,
+      at = Number(row.dataset.row);
+    const steps = {
+      ArrowDown: at + 1,
+      ArrowUp: at - 1,
+      PageDown: at + page,
+      PageUp: at - page,
+      Home: 0,
+      End: sorted.length - 1,
+    };
     if (event.key in steps) move_focus(steps[event.key]);
     else if (event.key === "Enter" || event.key === " ") P.show_details(P.points[Number(row.dataset.point)]);
     else return;
@@ -121,19 +211,53 @@
 
   const column_menu = () => {
     const groups = P.unique(P.columns.map((c) => c.group)).filter((g) => g !== "point");
-    return P.element("details", { class: "menu" }, P.element("summary", {}, "Columns"),
-      P.element("div", { class: "menu-body" }, ...groups.map((group) => P.element("fieldset", {}, P.element("legend", {}, group),
-        ...P.columns.filter((c) => c.group === group).map((c) => P.element("label", {},
-          P.element("input", { type: "checkbox", checked: c.shown, onchange: (e) => { c.shown = e.target.checked; rebuild(); } }),
-          P.label(c.key)))))));
+    return P.element(
+      "details",
+      { class: "menu" },
+      P.element("summary", {}, "Columns"),
+      P.element(
+        "div",
+        { class: "menu-body" },
+        ...groups.map((group) =>
+          P.element(
+            "fieldset",
+            {},
+            P.element("legend", {}, group),
+            ...P.columns
+              .filter((c) => c.group === group)
+              .map((c) =>
+                P.element(
+                  "label",
+                  {},
+                  P.element("input", {
+                    type: "checkbox",
+                    checked: c.shown,
+                    onchange: (e) => {
+                      c.shown = e.target.checked;
+                      rebuild();
+                    },
+                  }),
+                  P.label(c.key),
+                ),
+              ),
+          ),
+        ),
+      ),
+    );
   };
   const debounced = (callback) => {
     let timer;
-    return (event) => { clearTimeout(timer); timer = setTimeout(() => callback(event), 120); };
+    return (event) => {
+      clearTimeout(timer);
+      timer = setTimeout(() => callback(event), 120);
+    };
   };
 
   P.build_table = (host) => {
-    const set = (key) => (value) => { P.filter[key] = value; P.filter_changed(); };
+    const set = (key) => (value) => {
+      P.filter[key] = value;
+      P.filter_changed();
+    };
     count = P.element("output", { class: "count", "aria-live": "polite" });
     body = P.element("tbody");
     table = P.element("table", { class: "results" });
@@ -145,15 +269,39 @@
       focus = Number(row.dataset.row);
       P.show_details(P.points[Number(row.dataset.point)]);
     });
-    host.replaceChildren(P.element("div", { class: "controls" },
-      P.element("label", { class: "field grow" }, P.element("span", {}, "Filter"), P.element("input", { type: "search", id: "filter-text",
-        placeholder: "words, or mask_size=16  rmse<0.01  scene!=nest", spellcheck: "false", oninput: debounced((e) => set("text")(e.target.value)) })),
-      P.select("Scene", [["", "all"], ...P.scenes.map((s) => [s, s])], "", set("scene")),
-      P.select("Status", [["", "all"], ...P.statuses.map((s) => [s, s])], "", set("status")),
-      column_menu(), count), scroller,
-    P.element("p", { class: "note" }, "The filter holds for the plots too. Click a row, or press Enter on it, for all parameters, passes, counters, raw samples and the command that runs it again."));
+    host.replaceChildren(
+      P.element(
+        "div",
+        { class: "controls" },
+        P.element(
+          "label",
+          { class: "field grow" },
+          P.element("span", {}, "Filter"),
+          P.element("input", {
+            type: "search",
+            id: "filter-text",
+            placeholder: "words, or mask_size=16  rmse<0.01  scene!=nest",
+            spellcheck: "false",
+            oninput: debounced((e) => set("text")(e.target.value)),
+          }),
+        ),
+        P.select("Scene", [["", "all"], ...P.scenes.map((s) => [s, s])], "", set("scene")),
+        P.select("Status", [["", "all"], ...P.statuses.map((s) => [s, s])], "", set("status")),
+        column_menu(),
+        count,
+      ),
+      scroller,
+      P.element(
+        "p",
+        { class: "note" },
+        "The filter holds for the plots too. Click a row, or press Enter on it, for all parameters, passes, counters, raw samples and the command that runs it again.",
+      ),
+    );
     rebuild();
-    P.on_filter(() => { scroller.scrollTop = 0; refresh(); });
+    P.on_filter(() => {
+      scroller.scrollTop = 0;
+      refresh();
+    });
     P.on_scheme_change(() => draw_rows());
     addEventListener("beforeprint", () => draw_rows(true));
     addEventListener("afterprint", () => draw_rows());

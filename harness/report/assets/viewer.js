@@ -1,104 +1,153 @@
 // The pictures of one scene: all techniques beside the reference, two under a slider, or several flicked in one place.
 (() => {
   const layers = { shaded: "Shaded", visibility: "Visibility", error: "Signed error" };
-  const common_keys = ["resolution", "camera", "light", "light_size", "mask_size", "light_samples", "light_pattern", "frame", "seed"];
-  const state = { scene: null, layer: "shaded", mode: "side", range: 0.1, common: {}, tiles: [], a: 0, b: 1, current: 0, previous: 1, split: 50, timer: null };
+  const { state, common_keys, with_pictures, candidates, best_of, fill_tiles, refit_tiles } = P.tiles;
+  const { source_of, name_of, variant_of } = P.tiles;
   let host, stage, bar, common_row;
 
-  const with_pictures = (scene) => P.points.filter((p) => p.scene === scene && Object.keys(p.pictures).length);
-  const matches = (p) => Object.entries(state.common).reduce((n, [key, value]) => {
-    const own = P.param(p, key);
-    return n + (own === undefined || own === null || JSON.stringify(own) === value ? 1 : 0);
-  }, 0);
-  const error_of = (p) => p.metrics?.rmse ?? Infinity;
-
-  // What a technique can show for the common parameters chosen; all it has when nothing fits.
-  const candidates = (technique) => {
-    const list = with_pictures(state.scene).filter((p) => p.technique === technique);
-    const best = Math.max(...list.map(matches));
-    return list.filter((p) => matches(p) === best);
-  };
-  const best_of = (list) => list.reduce((a, b) => (error_of(b) < error_of(a) ? b : a));
-  const reference_of = (tiles) => tiles.find((t) => t.point?.pictures.reference || t.point?.pictures.reference_shaded)?.point ?? null;
-
-  const fill_tiles = () => {
-    const techniques = P.unique(with_pictures(state.scene).map((p) => p.technique));
-    const tiles = techniques.map((technique) => ({ technique, point: best_of(candidates(technique)) }));
-    const reference = reference_of(tiles);
-    state.tiles = reference ? [{ technique: null, point: reference }, ...tiles] : tiles;
-    state.a = 0;
-    state.b = Math.min(1, state.tiles.length - 1);
-    state.current = state.b;
-    state.previous = state.a;
-  };
-  // After a common parameter changed: every tile goes to its nearest picture.
-  const refit_tiles = () => {
-    for (const tile of state.tiles) if (tile.technique) {
-      const list = candidates(tile.technique);
-      if (!list.includes(tile.point)) tile.point = best_of(list);
-    }
-    const reference = reference_of(state.tiles.filter((t) => t.technique));
-    for (const tile of state.tiles) if (!tile.technique && reference) tile.point = reference;
-  };
-
-  const source_of = (tile) => {
-    const pictures = tile.point.pictures;
-    if (!tile.technique) return { src: state.layer === "shaded" ? pictures.reference_shaded ?? pictures.reference : pictures.reference ?? pictures.reference_shaded };
-    if (state.layer === "error") return pictures.error_code ? { src: pictures.error_code, coded: true } : { src: pictures.error };
-    return { src: pictures[state.layer] };
-  };
-  const name_of = (tile) => (tile.technique ? P.technique_label(tile.technique) : "Reference");
-  const variant_keys = (tile) => P.variant_keys(with_pictures(state.scene).filter((p) => p.technique === tile.technique));
-  const variant_of = (tile) => (tile.technique ? P.variant_text(tile.point, variant_keys(tile)) : "converged");
   const image = (tile, more = {}) => {
     const { src, coded } = source_of(tile);
     if (!src) return P.element("span", { class: "missing" }, "no such picture");
-    return P.element("img", { src, alt: `${name_of(tile)}, ${variant_of(tile)}, ${layers[state.layer].toLowerCase()}`, draggable: "false",
-      loading: "lazy", decoding: "async", ...more, class: `${coded ? "coded" : ""} ${more.class ?? ""}` });
+    return P.element("img", {
+      src,
+      alt: `${name_of(tile)}, ${variant_of(tile)}, ${layers[state.layer].toLowerCase()}`,
+      draggable: "false",
+      loading: "lazy",
+      decoding: "async",
+      ...more,
+      class: `${coded ? "coded" : ""} ${more.class ?? ""}`,
+    });
   };
   const view = (tile, ...children) => {
     const [w, h] = tile.point.params.resolution ?? [1, 1];
-    return P.element("div", { class: "view", style: `aspect-ratio:${w || 1}/${h || 1}` }, ...children, P.element("i", { class: "cross" }));
+    return P.element(
+      "div",
+      { class: "view", style: `aspect-ratio:${w || 1}/${h || 1}` },
+      ...children,
+      P.element("i", { class: "cross" }),
+    );
   };
 
   const figures = (point) => {
-    const time = P.stat(point, "frame_ms")?.median, rmse = point.metrics?.rmse;
-    return [time === undefined ? null : `${P.number(time, 3)} ms`, typeof rmse === "number" ? `RMSE ${P.number(rmse, 2)}` : null].filter(Boolean).join(" · ");
+    const time = P.stat(point, "frame_ms")?.median,
+      rmse = point.metrics?.rmse;
+    return [
+      time === undefined ? null : `${P.number(time, 3)} ms`,
+      typeof rmse === "number" ? `RMSE ${P.number(rmse, 2)}` : null,
+    ]
+      .filter(Boolean)
+      .join(" · ");
   };
   const variant_select = (tile) => {
-    const list = candidates(tile.technique), all = list.includes(tile.point) ? list : [tile.point, ...list];
+    const list = candidates(tile.technique),
+      all = list.includes(tile.point) ? list : [tile.point, ...list];
     const keys = P.variant_keys(all);
     if (all.length < 2) return P.element("span", { class: "variant" }, variant_of(tile));
-    const box = P.element("select", { "aria-label": `${name_of(tile)}: which variant`, onchange: () => { tile.point = P.points[Number(box.value)]; draw(); } },
-      ...all.map((p) => P.element("option", { value: p.index }, P.variant_text(p, keys) || "default")));
+    const box = P.element(
+      "select",
+      {
+        "aria-label": `${name_of(tile)}: which variant`,
+        onchange: () => {
+          tile.point = P.points[Number(box.value)];
+          draw();
+        },
+      },
+      ...all.map((p) => P.element("option", { value: p.index }, P.variant_text(p, keys) || "default")),
+    );
     box.value = String(tile.point.index);
     return box;
   };
-  const caption = (tile, index) => P.element("figcaption", {},
-    P.element("div", { class: "name" }, tile.technique ? P.marker_icon(tile.technique) : "", P.element("strong", {}, name_of(tile)),
-      tile.technique ? P.element("button", { class: "link", onclick: () => P.show_details(tile.point) }, "details") : "",
-      tile.extra ? P.element("button", { class: "link", "aria-label": `Remove ${name_of(tile)}`, onclick: () => { state.tiles.splice(index, 1); draw(); } }, "remove") : ""),
-    tile.technique ? variant_select(tile) : P.element("span", { class: "variant" }, P.reference_text(tile.point)),
-    P.element("span", { class: "figures" }, tile.technique ? figures(tile.point) : ""));
+  const caption = (tile, index) =>
+    P.element(
+      "figcaption",
+      {},
+      P.element(
+        "div",
+        { class: "name" },
+        tile.technique ? P.marker_icon(tile.technique) : "",
+        P.element("strong", {}, name_of(tile)),
+        tile.technique
+          ? P.element("button", { class: "link", onclick: () => P.show_details(tile.point) }, "details")
+          : "",
+        tile.extra
+          ? P.element(
+              "button",
+              {
+                class: "link",
+                "aria-label": `Remove ${name_of(tile)}`,
+                onclick: () => {
+                  state.tiles.splice(index, 1);
+                  draw();
+                },
+              },
+              "remove",
+            )
+          : "",
+      ),
+      tile.technique
+        ? variant_select(tile)
+        : P.element("span", { class: "variant" }, P.reference_text(tile.point)),
+      P.element("span", { class: "figures" }, tile.technique ? figures(tile.point) : ""),
+    );
 
   const side_by_side = () => {
-    const add = P.element("select", { "aria-label": "Add a picture", onchange: () => {
-      state.tiles.push({ technique: add.value, point: best_of(candidates(add.value)), extra: true });
-      draw();
-    } }, P.element("option", { value: "" }, "+ another variant of …"),
-    ...P.unique(state.tiles.map((t) => t.technique).filter(Boolean)).map((t) => P.element("option", { value: t }, P.technique_label(t))));
-    return [P.element("div", { class: "tiles" }, ...state.tiles.map((tile, i) =>
-      P.element("figure", { class: "tile" }, view(tile, image(tile)), caption(tile, i)))), P.element("p", { class: "add" }, add)];
+    const add = P.element(
+      "select",
+      {
+        "aria-label": "Add a picture",
+        onchange: () => {
+          state.tiles.push({ technique: add.value, point: best_of(candidates(add.value)), extra: true });
+          draw();
+        },
+      },
+      P.element("option", { value: "" }, "+ another variant of …"),
+      ...P.unique(state.tiles.map((t) => t.technique).filter(Boolean)).map((t) =>
+        P.element("option", { value: t }, P.technique_label(t)),
+      ),
+    );
+    return [
+      P.element(
+        "div",
+        { class: "tiles" },
+        ...state.tiles.map((tile, i) =>
+          P.element("figure", { class: "tile" }, view(tile, image(tile)), caption(tile, i)),
+        ),
+      ),
+      P.element("p", { class: "add" }, add),
+    ];
   };
 
-  const tile_options = () => state.tiles.map((tile, i) => [String(i), `${name_of(tile)}${tile.technique && variant_of(tile) ? ` (${variant_of(tile)})` : ""}`]);
+  const tile_options = () =>
+    state.tiles.map((tile, i) => [
+      String(i),
+      `${name_of(tile)}${tile.technique && variant_of(tile) ? ` (${variant_of(tile)})` : ""}`,
+    ]);
   const tag = (side, tile) => P.element("span", { class: `tag ${side}` }, name_of(tile));
   const slider = () => {
-    const a = state.tiles[state.a], b = state.tiles[state.b];
-    const range = P.element("input", { type: "range", min: 0, max: 100, step: 0.5, value: state.split, class: "split", "aria-label": "Where the two pictures meet",
-      oninput: () => { state.split = Number(range.value); frame.style.setProperty("--split", `${state.split}%`); } });
+    const a = state.tiles[state.a],
+      b = state.tiles[state.b];
+    const range = P.element("input", {
+      type: "range",
+      min: 0,
+      max: 100,
+      step: 0.5,
+      value: state.split,
+      class: "split",
+      "aria-label": "Where the two pictures meet",
+      oninput: () => {
+        state.split = Number(range.value);
+        frame.style.setProperty("--split", `${state.split}%`);
+      },
+    });
     const handle = P.element("div", { class: "handle", "aria-hidden": "true" });
-    const frame = view(a, P.element("div", { class: "half right" }, image(b)), P.element("div", { class: "half left" }, image(a)), handle, tag("left", a), tag("right", b));
+    const frame = view(
+      a,
+      P.element("div", { class: "half right" }, image(b)),
+      P.element("div", { class: "half left" }, image(a)),
+      handle,
+      tag("left", a),
+      tag("right", b),
+    );
     frame.style.setProperty("--split", `${state.split}%`);
     handle.addEventListener("pointerdown", (event) => {
       handle.setPointerCapture(event.pointerId);
@@ -109,15 +158,29 @@
         range.dispatchEvent(new Event("input"));
       };
     });
-    handle.addEventListener("pointerup", () => { handle.onpointermove = null; });
-    const pick = (key) => (v) => { state[key] = Number(v); draw(); };
-    return [P.element("div", { class: "controls" }, P.select("Left", tile_options(), String(state.a), pick("a")), P.select("Right", tile_options(), String(state.b), pick("b"))),
-      P.element("div", { class: "single" }, frame, range)];
+    handle.addEventListener("pointerup", () => {
+      handle.onpointermove = null;
+    });
+    const pick = (key) => (v) => {
+      state[key] = Number(v);
+      draw();
+    };
+    return [
+      P.element(
+        "div",
+        { class: "controls" },
+        P.select("Left", tile_options(), String(state.a), pick("a")),
+        P.select("Right", tile_options(), String(state.b), pick("b")),
+      ),
+      P.element("div", { class: "single" }, frame, range),
+    ];
   };
 
   const show_flick = (index) => {
     if (index !== state.current) [state.previous, state.current] = [state.current, index];
-    stage.querySelectorAll(".flick img, .flick .missing").forEach((img, i) => img.classList.toggle("shown", i === state.current));
+    stage
+      .querySelectorAll(".flick img, .flick .missing")
+      .forEach((img, i) => img.classList.toggle("shown", i === state.current));
     stage.querySelectorAll(".flick-list button").forEach((b, i) => {
       b.setAttribute("aria-pressed", i === state.current);
       b.classList.toggle("other", i === state.previous);
@@ -125,20 +188,59 @@
     const name = stage.querySelector(".flick .tag");
     if (name) name.textContent = name_of(state.tiles[state.current]);
   };
-  const stop_timer = () => { clearInterval(state.timer); state.timer = null; };
+  const stop_timer = () => {
+    clearInterval(state.timer);
+    state.timer = null;
+  };
   const flick = () => {
     state.current = Math.min(state.current, state.tiles.length - 1);
     state.previous = Math.min(state.previous, state.tiles.length - 1);
-    const frame = view(state.tiles[state.current], ...state.tiles.map((tile) => image(tile, { loading: "eager" })), tag("left", state.tiles[state.current]));
+    const frame = view(
+      state.tiles[state.current],
+      ...state.tiles.map((tile) => image(tile, { loading: "eager" })),
+      tag("left", state.tiles[state.current]),
+    );
     frame.classList.add("flick");
-    const auto = P.element("button", { type: "button", "aria-pressed": "false", onclick: () => {
-      if (state.timer) stop_timer(); else state.timer = setInterval(() => show_flick(state.previous), 600);
-      auto.setAttribute("aria-pressed", String(state.timer !== null));
-    } }, "Alternate");
-    const list = P.element("div", { class: "flick-list", role: "group", "aria-label": "Picture shown" }, ...tile_options().map(([, text], i) =>
-      P.element("button", { type: "button", onclick: () => show_flick(i) }, P.element("kbd", {}, String(i + 1)), text)));
-    return [P.element("div", { class: "single" }, frame),
-      P.element("div", { class: "controls" }, list, P.element("button", { type: "button", class: "swap", onclick: () => show_flick(state.previous) }, P.element("kbd", {}, "Space"), "swap the last two"), auto)];
+    const auto = P.element(
+      "button",
+      {
+        type: "button",
+        "aria-pressed": "false",
+        onclick: () => {
+          if (state.timer) stop_timer();
+          else state.timer = setInterval(() => show_flick(state.previous), 600);
+          auto.setAttribute("aria-pressed", String(state.timer !== null));
+        },
+      },
+      "Alternate",
+    );
+    const list = P.element(
+      "div",
+      { class: "flick-list", role: "group", "aria-label": "Picture shown" },
+      ...tile_options().map(([, text], i) =>
+        P.element(
+          "button",
+          { type: "button", onclick: () => show_flick(i) },
+          P.element("kbd", {}, String(i + 1)),
+          text,
+        ),
+      ),
+    );
+    return [
+      P.element("div", { class: "single" }, frame),
+      P.element(
+        "div",
+        { class: "controls" },
+        list,
+        P.element(
+          "button",
+          { type: "button", class: "swap", onclick: () => show_flick(state.previous) },
+          P.element("kbd", {}, "Space"),
+          "swap the last two",
+        ),
+        auto,
+      ),
+    ];
   };
 
   const draw = () => {
@@ -154,11 +256,24 @@
     const keys = common_keys.filter((key) => P.values_of(list, key).length > 1);
     for (const key of keys) {
       const values = P.values_of(list, key);
-      if (!values.some((v) => JSON.stringify(v) === state.common[key])) state.common[key] = JSON.stringify(values[values.length - 1]);
+      if (!values.some((v) => JSON.stringify(v) === state.common[key]))
+        state.common[key] = JSON.stringify(values[values.length - 1]);
     }
     for (const key of Object.keys(state.common)) if (!keys.includes(key)) delete state.common[key];
-    common_row.replaceChildren(...keys.map((key) => P.select(P.label(key), P.values_of(list, key).map((v) => [JSON.stringify(v), P.value_text(v)]), state.common[key],
-      (v) => { state.common[key] = v; refit_tiles(); draw(); })));
+    common_row.replaceChildren(
+      ...keys.map((key) =>
+        P.select(
+          P.label(key),
+          P.values_of(list, key).map((v) => [JSON.stringify(v), P.value_text(v)]),
+          state.common[key],
+          (v) => {
+            state.common[key] = v;
+            refit_tiles();
+            draw();
+          },
+        ),
+      ),
+    );
   };
   const set_scene = (scene) => {
     state.scene = scene;
@@ -168,44 +283,100 @@
   };
   const draw_bar = () => {
     P.set_error_range(state.range);
-    bar.replaceChildren(P.select("Range", [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].map((r) => [String(r), `± ${r}`]), String(state.range),
-      (v) => { state.range = Number(v); draw_bar(); }), P.colour_bar(state.range));
+    bar.replaceChildren(
+      P.select(
+        "Range",
+        [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].map((r) => [String(r), `± ${r}`]),
+        String(state.range),
+        (v) => {
+          state.range = Number(v);
+          draw_bar();
+        },
+      ),
+      P.colour_bar(state.range),
+    );
   };
 
   const on_key = (event) => {
-    if (/^(SELECT|INPUT|TEXTAREA)$/.test(event.target.tagName) || event.altKey || event.ctrlKey || event.metaKey) return;
+    if (
+      /^(SELECT|INPUT|TEXTAREA)$/.test(event.target.tagName) ||
+      event.altKey ||
+      event.ctrlKey ||
+      event.metaKey
+    )
+      return;
     const digit = /^[1-9]$/.test(event.key) ? Number(event.key) - 1 : -1;
-    if (state.mode === "flick" && event.key === " " && event.target.tagName !== "BUTTON") show_flick(state.previous);
+    if (state.mode === "flick" && event.key === " " && event.target.tagName !== "BUTTON")
+      show_flick(state.previous);
     else if (state.mode === "flick" && digit >= 0 && digit < state.tiles.length) show_flick(digit);
     else if (!P.zoom_key(event)) return;
     event.preventDefault();
   };
 
-  P.reference_text = (point) => {
-    const samples = P.data.run?.config?.reference?.light_samples;
-    const text = typeof samples === "number" ? `Embree, ${P.number(samples)} light samples` : "Embree, converged";
-    return point.metrics?.reference_standard_error > 0 ? `${text}, std. error ${P.number(point.metrics.reference_standard_error, 2)}` : text;
-  };
-  P.viewer_state = state;
   P.build_viewer = (element) => {
     const scenes = P.scenes.filter((scene) => with_pictures(scene).length);
     if (!scenes.length) {
-      element.replaceChildren(P.element("p", { class: "empty" }, "The run has written no pictures (\"images\": [] in the config, or --no-images)."));
+      element.replaceChildren(
+        P.element(
+          "p",
+          { class: "empty" },
+          'The run has written no pictures ("images": [] in the config, or --no-images).',
+        ),
+      );
       return;
     }
     host = element;
-    const available = Object.entries(layers).filter(([key]) => P.points.some((p) => p.pictures[key] || (key === "error" && p.pictures.error_code)));
+    const available = Object.entries(layers).filter(([key]) =>
+      P.points.some((p) => p.pictures[key] || (key === "error" && p.pictures.error_code)),
+    );
     if (!available.some(([key]) => key === state.layer)) state.layer = available[0]?.[0] ?? "visibility";
-    stage = P.element("div", { class: "stage", tabindex: 0, role: "group", "aria-label": "Pictures; + and − zoom, arrows pan, 0 resets, digits and space choose in flick mode" });
+    stage = P.element("div", {
+      class: "stage",
+      tabindex: 0,
+      role: "group",
+      "aria-label": "Pictures; + and − zoom, arrows pan, 0 resets, digits and space choose in flick mode",
+    });
     bar = P.element("div", { class: "controls range-bar" });
     common_row = P.element("div", { class: "inline" });
-    element.replaceChildren(P.make_error_filter(),
-      P.element("div", { class: "controls" },
-        P.choices("Scene", scenes.map((s) => [s, s]), scenes[0], set_scene),
-        P.choices("Show", available, state.layer, (v) => { state.layer = v; draw(); }),
-        P.choices("As", [["side", "Side by side"], ["slider", "Slider"], ["flick", "Flick"]], state.mode, (v) => { state.mode = v; draw(); }),
-        common_row, P.element("div", { class: "corner" }, P.element("output", { class: "place" }), P.zoom_controls())), bar, stage,
-      P.element("p", { class: "note" }, "Double-click or Ctrl + wheel zooms, dragging pans; all pictures stay in step. Visibility is shown linearly (grey = V)."));
+    element.replaceChildren(
+      P.make_error_filter(),
+      P.element(
+        "div",
+        { class: "controls" },
+        P.choices(
+          "Scene",
+          scenes.map((s) => [s, s]),
+          scenes[0],
+          set_scene,
+        ),
+        P.choices("Show", available, state.layer, (v) => {
+          state.layer = v;
+          draw();
+        }),
+        P.choices(
+          "As",
+          [
+            ["side", "Side by side"],
+            ["slider", "Slider"],
+            ["flick", "Flick"],
+          ],
+          state.mode,
+          (v) => {
+            state.mode = v;
+            draw();
+          },
+        ),
+        common_row,
+        P.element("div", { class: "corner" }, P.element("output", { class: "place" }), P.zoom_controls()),
+      ),
+      bar,
+      stage,
+      P.element(
+        "p",
+        { class: "note" },
+        "Double-click or Ctrl + wheel zooms, dragging pans; all pictures stay in step. Visibility is shown linearly (grey = V).",
+      ),
+    );
     stage.addEventListener("keydown", on_key);
     P.make_zoom_live(element);
     draw_bar();
