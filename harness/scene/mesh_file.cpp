@@ -6,9 +6,12 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <bit>
 #include <cctype>
+#include <mutex>
 #include <unordered_map>
 
 #include "core/error.h"
@@ -104,6 +107,34 @@ void append_node(Mesh& out, const aiScene& scene, const aiNode& node, const Mat4
   for (unsigned c = 0; c < node.mNumChildren; ++c) append_node(out, scene, *node.mChildren[c], transform);
 }
 
+// While it lives, errors that the importer logs but carries on after. The OFF reader moves an index that is
+// out of range to the last vertex and says so only there: the wrong triangle would pass for a right one.
+class ImportErrors {
+ public:
+  ImportErrors() : lock_(mutex()) {
+    Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+    Assimp::DefaultLogger::get()->attachStream(new Stream(&text_),
+                                               Assimp::Logger::Err);  // the logger deletes it
+  }
+  ~ImportErrors() { Assimp::DefaultLogger::kill(); }
+  ImportErrors(const ImportErrors&) = delete;
+  ImportErrors& operator=(const ImportErrors&) = delete;
+  bool index_out_of_range() const { return text_.find("index is out of range") != std::string::npos; }
+
+ private:
+  struct Stream : Assimp::LogStream {
+    explicit Stream(std::string* text) : out(text) {}
+    void write(const char* message) override { *out += message; }
+    std::string* out;
+  };
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  std::lock_guard<std::mutex> lock_;  // the importer's logger is one for the whole process
+  std::string text_;
+};
+
 struct VertexKey {
   uint32_t bits[6];
   bool operator==(const VertexKey&) const = default;
@@ -146,6 +177,7 @@ Mesh load_mesh(const std::filesystem::path& path, int frame) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))
     throw InputError(fmt::format("{}: no such mesh file", path.string()));
+  const ImportErrors errors;
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_IMPORT_GLOBAL_KEYFRAME, frame);
   const aiScene* scene = nullptr;
@@ -158,6 +190,8 @@ Mesh load_mesh(const std::filesystem::path& path, int frame) {
   if (!scene || !scene->mRootNode)
     throw InputError(
         fmt::format("{}: cannot be read as {}: {}", path.string(), ext, importer.GetErrorString()));
+  if (errors.index_out_of_range())
+    throw InputError(fmt::format("{}: a face has a vertex index out of range", path.string()));
   Mesh mesh;
   append_node(mesh, *scene, *scene->mRootNode, Mat4d{});
   // Keyframes must number their vertices alike, whatever positions happen to coincide in one of them.
