@@ -20,7 +20,6 @@ json techniques(const Context& context) {
 
 json devices() {
   json out = json::array();
-#ifdef PENUMBRA_HAS_GPU
   for (const gpu::DeviceInfo& d : gpu::list_devices())
     out.push_back({{"index", d.index},
                    {"name", d.name},
@@ -30,7 +29,6 @@ json devices() {
                    {"software", d.software},
                    {"usable", d.missing.empty()},
                    {"missing", d.missing}});
-#endif
   return out;
 }
 
