@@ -94,4 +94,10 @@ void Hierarchy::commit() {
   check();
 }
 
+int Hierarchy::native_packet() const {
+  const auto has = [&](RTCDeviceProperty property) { return rtcGetDeviceProperty(device_, property) != 0; };
+  if (has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) return 16;
+  return has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8 : 4;
+}
+
 }  // namespace penumbra::ray_tracing

@@ -25,6 +25,9 @@ class Hierarchy {
   // Builds or refits after load() or move().
   void commit();
 
+  // The widest packet (4, 8 or 16 rays) that Embree traces with one vector on this processor.
+  int native_packet() const;
+
   RTCScene scene() const { return scene_; }
   // What Embree holds now: hierarchy, vertex and index copies.
   uint64_t bytes() const { return static_cast<uint64_t>(bytes_.load(std::memory_order_relaxed)); }

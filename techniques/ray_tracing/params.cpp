@@ -16,7 +16,9 @@ const ParamTable<RayTracingParams>& ray_tracing_params() {
               "at medium "
               "quality and then only moves the boxes."});
     t.boolean("robust", &P::robust, {"", "", "Embree's robust mode: watertight edges, slower."});
-    t.choice("packet", &P::packet, {"1", "4", "8", "16"}, {"rays", "", "Rays in one call to Embree."});
+    t.choice(
+        "packet", &P::packet, {"auto", "1", "4", "8", "16"},
+        {"rays", "", "Rays in one call to Embree; auto is the widest that the processor has vectors for."});
     t.choice("order", &P::order, {"auto", "light", "pixels"},
              {"", "",
               "What fills a packet: neighbouring light samples of one view sample, or neighbouring pixels "

@@ -9,11 +9,9 @@ namespace {
 
 using ray_tracing::Hierarchy;
 using ray_tracing::Quality;
+using ray_tracing::trace_settings;
 using ray_tracing::Tracer;
 using ray_tracing::TraceSettings;
-
-// Below this the coherence hint is the faster (README.md has the figures).
-constexpr std::size_t coherent_triangles = 8000;
 
 Quality quality_of(const RayTracingParams& p) {
   switch (p.build_quality) {
@@ -29,33 +27,6 @@ Quality quality_of(const RayTracingParams& p) {
       break;
   }
   return Quality::refit;
-}
-
-int rays_of(RayTracingParams::Packet packet) {
-  switch (packet) {
-    case RayTracingParams::Packet::one:
-      return 1;
-    case RayTracingParams::Packet::four:
-      return 4;
-    case RayTracingParams::Packet::eight:
-      return 8;
-    case RayTracingParams::Packet::sixteen:
-      break;
-  }
-  return 16;
-}
-
-TraceSettings settings_for(const RayTracingParams& p, const Case& c) {
-  TraceSettings s;
-  s.packet = rays_of(p.packet);
-  using Order = RayTracingParams::Order;
-  const bool few_samples = c.light_samples->count() < s.packet;
-  s.pixels_in_packet = p.order == Order::pixels || (p.order == Order::automatic && few_samples);
-  using Coherent = RayTracingParams::Coherent;
-  const bool small = c.frame->geometry.triangle_count() < coherent_triangles;
-  const bool coherent = p.coherent == Coherent::on || (p.coherent == Coherent::automatic && small);
-  s.coherence = coherent ? embree::Coherence::coherent : embree::Coherence::incoherent;
-  return s;
 }
 
 class RayTracing final : public Technique {
@@ -80,7 +51,7 @@ class RayTracing final : public Technique {
       passes.host_pass(refits() ? "refit_hierarchy" : "build_hierarchy", [&] { hierarchy_->commit(); });
     }
     passes.host_pass("order_light_samples",
-                     [&] { tracer_.assign(frame.light, *c.light_samples, settings_for(params_, c)); });
+                     [&] { tracer_.assign(frame.light, *c.light_samples, settings_for(c)); });
   }
 
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {
@@ -98,6 +69,7 @@ class RayTracing final : public Technique {
   Counters counters() override {
     return {{"rays", static_cast<double>(counts_.rays)},
             {"light_samples_without_ray", static_cast<double>(counts_.without_ray)},
+            {"packet", static_cast<double>(tracer_.settings().packet)},
             {"coherent", tracer_.settings().coherence == embree::Coherence::coherent ? 1.0 : 0.0},
             {"bvh_bytes", hierarchy_ ? static_cast<double>(hierarchy_->bytes()) : 0.0}};
   }
@@ -107,6 +79,11 @@ class RayTracing final : public Technique {
   }
 
  private:
+  TraceSettings settings_for(const Case& c) const {
+    return trace_settings(params_, c.frame->geometry.triangle_count(), c.light_samples->count(),
+                          hierarchy_->native_packet());
+  }
+
   bool refits() const { return quality_of(params_) == Quality::refit; }
 
   void load(const Geometry& geometry) {

@@ -6,6 +6,7 @@
 #include "embree/embree.h"
 #include "samples/view_samples.h"
 #include "techniques/ray_tracing/light_packets.h"
+#include "techniques/ray_tracing/params.h"
 
 namespace penumbra::ray_tracing {
 
@@ -14,6 +15,11 @@ struct TraceSettings {
   bool pixels_in_packet = false;  // else a packet's rays go from one view sample to several light samples
   embree::Coherence coherence = embree::Coherence::incoherent;
 };
+
+// What the room's parameters mean for a scene of so many triangles, a set of so many light samples, and a
+// processor whose vectors hold `native_packet` rays (Hierarchy::native_packet).
+TraceSettings trace_settings(const RayTracingParams& params, std::size_t triangles, int light_samples,
+                             int native_packet);
 
 struct TraceCounts {
   uint64_t rays = 0;
