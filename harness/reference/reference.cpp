@@ -71,7 +71,8 @@ void sort_along_curve(LightSamples& samples) {
 }
 
 std::vector<LightSamples> make_batches(const Light& light, int n, uint32_t seed) {
-  if (!light.is_area()) return {make_reference_samples(light, 1, seed)};
+  // One sample, or a set of points that is the light itself: nothing to estimate.
+  if (!light.is_area() || light.kind == LightKind::volume) return {make_reference_samples(light, 1, seed)};
   const int batches = std::clamp(n, 1, batch_count);
   std::vector<LightSamples> sets;
   for (int b = 0; b < batches; ++b) {

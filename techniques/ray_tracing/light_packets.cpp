@@ -77,6 +77,8 @@ void LightPackets::assign(const LightSamples& samples, int lanes) {
                     tail = order.size() - (packets - 1) * lanes_;
   full_ = (1U << lanes) - 1, last_ = (1U << tail) - 1;
   x_.clear(), y_.clear(), z_.clear(), runs_.clear(), first_run_.assign(1, 0);
+  bounds_ = {};
+  for (const Vec4f& point : samples.points) bounds_.extend(point.xyz());
   for (std::size_t slot = 0; slot < packets * lanes_; ++slot) {
     const bool used = slot < order.size();
     const std::size_t sample = order[std::min(slot, order.size() - 1)];

@@ -9,12 +9,6 @@ namespace penumbra::ray_tracing {
 
 class LightPackets {
  public:
-  // `lanes` consecutive lanes from `lane` on are bits `shift` and up of mask word `word`.
-  struct Run {
-    uint32_t word, lane_bits;  // lane_bits: mask of the run's lanes, moved down to bit 0
-    uint8_t lane, shift;
-  };
-
   // Lanes of a packet are a tile of a grid of samples (4 x 4 for 16), or neighbours along a Morton curve.
   void assign(const LightSamples& samples, int lanes);
 
@@ -25,14 +19,25 @@ class LightPackets {
   const float* z(std::size_t packet) const { return &z_[packet * lanes_]; }
   // Bit i set: lane i holds a sample.
   uint32_t used(std::size_t packet) const { return packet + 1 < count() ? full_ : last_; }
-  const Run* runs_begin(std::size_t packet) const { return &runs_[first_run_[packet]]; }
-  const Run* runs_end(std::size_t packet) const { return runs_.data() + first_run_[packet + 1]; }
+  // Sets the bits of the samples in the lanes whose bit is set.
+  void scatter(std::size_t packet, uint32_t lane_set, uint32_t* mask) const {
+    for (uint32_t r = first_run_[packet]; r < first_run_[packet + 1]; ++r)
+      mask[runs_[r].word] |= (lane_set >> runs_[r].lane & runs_[r].lane_bits) << runs_[r].shift;
+  }
+  // Of all samples' coordinates.
+  const Box& bounds() const { return bounds_; }
   uint64_t bytes() const;
 
  private:
+  // `lanes` consecutive lanes from `lane` on are bits `shift` and up of mask word `word`.
+  struct Run {
+    uint32_t word, lane_bits;  // lane_bits: mask of the run's lanes, moved down to bit 0
+    uint8_t lane, shift;
+  };
   std::size_t lanes_ = 1;
   uint32_t full_ = 0, last_ = 0;
   std::vector<float> x_, y_, z_;
+  Box bounds_;
   std::vector<Run> runs_;
   std::vector<uint32_t> first_run_{0};
 };

@@ -18,11 +18,6 @@ constexpr std::size_t tile_pixels = tile_side * tile_side;
 
 int tiles_across(int pixels) { return (pixels + tile_side - 1) / tile_side; }
 
-// Where the horizon rule is judged (P) and where the rays start (P').
-struct ViewSample {
-  Vec3f position, origin, normal;
-};
-
 ViewSample view_sample(const ViewSamplesHost& view, std::size_t pixel) {
   return {view.position[pixel].xyz(), view.origin[pixel].xyz(), view.geometric_normal[pixel].xyz()};
 }
@@ -57,7 +52,7 @@ struct Tracer::Task {
   const Job& job;
   const uint32_t* pixels;
   std::size_t pixel_count;
-  mutable uint64_t rays = 0;
+  mutable uint64_t without_ray = 0;
 };
 
 void Tracer::assign(const Light& light, const LightSamples& samples, const TraceSettings& settings) {
@@ -125,35 +120,52 @@ std::size_t Tracer::gather(const Job& job, std::size_t tile, uint32_t* pixels) c
   return count;
 }
 
+// Which of a packet's lanes are above the horizon.
+template <int N>
+uint32_t Tracer::above_horizon(const ViewSample& v, std::size_t packet) const {
+  const float *x = packets_.x(packet), *y = packets_.y(packet), *z = packets_.z(packet);
+  const float scale = at_infinity_ ? 0.0F : 1.0F;
+  alignas(64) float minus_height[N];
+  for (int lane = 0; lane < N; ++lane) minus_height[lane] = -height(v, x[lane], y[lane], z[lane], scale);
+  return below_zero<N>(minus_height);
+}
+
+// Whether all light samples are above the horizon beyond any rounding: by the lowest corner of their bounds.
+bool Tracer::all_above_horizon(const ViewSample& v) const {
+  const Box& box = packets_.bounds();
+  const float scale = at_infinity_ ? 0.0F : 1.0F;
+  const auto lowest = [](float n, float lo, float hi) { return n > 0 ? lo : hi; };
+  const Vec3f corner{lowest(v.normal.x, box.lo.x, box.hi.x), lowest(v.normal.y, box.lo.y, box.hi.y),
+                     lowest(v.normal.z, box.lo.z, box.hi.z)};
+  const float size = std::abs(corner.x) + std::abs(corner.y) + std::abs(corner.z) + std::abs(v.position.x) +
+                     std::abs(v.position.y) + std::abs(v.position.z);
+  return height(v, corner.x, corner.y, corner.z, scale) > 1e-5F * size;
+}
+
 // One view sample after the other, each packet a group of neighbouring light samples.
 template <int N>
 void Tracer::trace_light(const Task& task) const {
   const Job& job = task.job;
   embree::Query query(settings_.coherence);
-  ShadowRays<N> rays(at_infinity_);
-  const float scale = at_infinity_ ? 0.0F : 1.0F;
-  alignas(64) float minus_height[N];
+  // Taken in turn: a packet is written while its predecessor is traced, as reading back at once what was just
+  // written in narrower pieces stalls the processor.
+  ShadowRays<N> rays[2] = {ShadowRays<N>(at_infinity_), ShadowRays<N>(at_infinity_)};
+  const std::size_t packets = packets_.count();
   for (std::size_t i = 0; i < task.pixel_count; ++i) {
     const std::size_t pixel = task.pixels[i];
     const ViewSample v = view_sample(job.view, pixel);
+    const bool all_above = all_above_horizon(v);
     uint32_t* mask = &job.mask[pixel * words_];
-    for (int lane = 0; lane < N; ++lane)
-      rays.origin_x()[lane] = v.origin.x, rays.origin_y()[lane] = v.origin.y,
-      rays.origin_z()[lane] = v.origin.z;
-    for (std::size_t p = 0; p < packets_.count(); ++p) {
-      const float *x = packets_.x(p), *y = packets_.y(p), *z = packets_.z(p);
-      for (int lane = 0; lane < N; ++lane) {
-        minus_height[lane] = -height(v, x[lane], y[lane], z[lane], scale);
-        rays.direction_x()[lane] = x[lane] - scale * v.origin.x;
-        rays.direction_y()[lane] = y[lane] - scale * v.origin.y;
-        rays.direction_z()[lane] = z[lane] - scale * v.origin.z;
-      }
-      const uint32_t used = packets_.used(p), wanted = used & below_zero<N>(minus_height);
+    rays[0].start(v.origin), rays[1].start(v.origin);
+    rays[0].aim(packets_.x(0), packets_.y(0), packets_.z(0));
+    for (std::size_t p = 0; p < packets; ++p) {
+      const std::size_t next = std::min(p + 1, packets - 1);
+      rays[(p + 1) % 2].aim(packets_.x(next), packets_.y(next), packets_.z(next));
+      const uint32_t used = packets_.used(p), wanted = all_above ? used : used & above_horizon<N>(v, p);
       uint32_t bits = used & ~wanted;
-      if (wanted) bits |= rays.blocked(job.scene, query, wanted);
-      task.rays += static_cast<uint64_t>(std::popcount(wanted));
-      for (auto run = packets_.runs_begin(p); run != packets_.runs_end(p); ++run)
-        mask[run->word] |= (bits >> run->lane & run->lane_bits) << run->shift;
+      if (bits) task.without_ray += static_cast<uint64_t>(std::popcount(bits));
+      if (wanted) bits |= rays[p % 2].blocked(job.scene, query, wanted) & wanted;
+      if (bits) packets_.scatter(p, bits, mask);
     }
     job.visibility[pixel] = visibility(mask);
   }
@@ -174,22 +186,19 @@ void Tracer::trace_pixels(const Task& task) const {
       const std::size_t pixel = task.pixels[first + std::min(lane, used - 1)];
       views[lane] = view_sample(job.view, pixel);
       masks[lane] = &job.mask[pixel * words_];
-      rays.origin_x()[lane] = views[lane].origin.x, rays.origin_y()[lane] = views[lane].origin.y;
-      rays.origin_z()[lane] = views[lane].origin.z;
+      rays.start(static_cast<int>(lane), views[lane].origin);
     }
     for (std::size_t s = 0; s < points_.size(); ++s) {
       const Vec4f l = points_[s];
       uint32_t wanted = 0;
-      for (std::size_t lane = 0; lane < N; ++lane) {
-        const Vec3f o = views[lane].origin;
-        if (lane < used && height(views[lane], l.x, l.y, l.z, scale) > 0) wanted |= 1U << lane;
-        rays.direction_x()[lane] = l.x - scale * o.x;
-        rays.direction_y()[lane] = l.y - scale * o.y;
-        rays.direction_z()[lane] = l.z - scale * o.z;
-      }
-      const uint32_t bits = ~wanted | (wanted ? rays.blocked(job.scene, query, wanted) : 0);
-      task.rays += static_cast<uint64_t>(std::popcount(wanted));
-      for (std::size_t lane = 0; lane < used; ++lane) masks[lane][s / 32] |= (bits >> lane & 1) << (s % 32);
+      for (std::size_t lane = 0; lane < used; ++lane)
+        if (height(views[lane], l.x, l.y, l.z, scale) > 0) wanted |= 1U << lane;
+      rays.aim(l.xyz());
+      uint32_t bits = ((1U << used) - 1) & ~wanted;
+      task.without_ray += static_cast<uint64_t>(std::popcount(bits));
+      if (wanted) bits |= rays.blocked(job.scene, query, wanted) & wanted;
+      for (std::size_t lane = 0; bits; ++lane, bits >>= 1)
+        if (bits & 1) masks[lane][s / 32] |= 1U << (s % 32);
     }
     for (std::size_t lane = 0; lane < used; ++lane)
       job.visibility[task.pixels[first + lane]] = visibility(masks[lane]);
@@ -216,8 +225,8 @@ void Tracer::run(const Job& job) const {
         tracer.trace_pixels<N>(task);
       else
         tracer.trace_light<N>(task);
-      call.job.rays.fetch_add(task.rays, std::memory_order_relaxed);
-      call.job.without_ray.fetch_add(count * tracer.points_.size() - task.rays, std::memory_order_relaxed);
+      call.job.without_ray.fetch_add(task.without_ray, std::memory_order_relaxed);
+      call.job.rays.fetch_add(count * tracer.points_.size() - task.without_ray, std::memory_order_relaxed);
     }
   });
 }

@@ -26,6 +26,11 @@ struct TraceCounts {
   uint64_t without_ray = 0;  // light samples below the horizon, behind the rectangle or outside the cone
 };
 
+// Where the horizon rule is judged (P) and where the rays start (P').
+struct ViewSample {
+  Vec3f position, origin, normal;
+};
+
 class Tracer {
  public:
   // What the loops need of the light. May allocate; trace() does not.
@@ -49,6 +54,9 @@ class Tracer {
   template <int N>
   void trace_pixels(const Task& task) const;
   std::size_t gather(const Job& job, std::size_t tile, uint32_t* pixels) const;
+  template <int N>
+  uint32_t above_horizon(const ViewSample& v, std::size_t packet) const;
+  bool all_above_horizon(const ViewSample& v) const;
   bool lit_side(Vec3f position) const;
   float visibility(const uint32_t* mask) const;
 

@@ -143,10 +143,7 @@ void technique(benchmark::State& state, const Study& study, int k,
 
 template <class F>
 void add(const std::string& name, F run) {
-  benchmark::RegisterBenchmark(name.c_str(), run)
-      ->Unit(benchmark::kMillisecond)
-      ->UseRealTime()
-      ->MeasureProcessCPUTime();
+  benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
 void add_all(const Study& study) {
