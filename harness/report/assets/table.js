@@ -86,7 +86,7 @@
           (c.key === "technique" ? 5 : 0),
       );
     }
-    return Math.min(longest, 46) + 1.8;
+    return Math.min(longest, 46) + 3;
   };
 
   const header = () =>

@@ -46,7 +46,8 @@
     tiles.find((t) => t.point?.pictures.reference || t.point?.pictures.reference_shaded)?.point ?? null;
 
   const fill_tiles = () => {
-    const techniques = P.unique(with_pictures(state.scene).map((p) => p.technique));
+    const own = with_pictures(state.scene);
+    const techniques = P.techniques.filter((t) => own.some((p) => p.technique === t));
     const tiles = techniques.map((technique) => ({ technique, point: best_of(candidates(technique)) }));
     const reference = reference_of(tiles);
     state.tiles = reference ? [{ technique: null, point: reference }, ...tiles] : tiles;

@@ -12,8 +12,7 @@
       src,
       alt: `${name_of(tile)}, ${variant_of(tile)}, ${layers[state.layer].toLowerCase()}`,
       draggable: "false",
-      loading: "lazy",
-      decoding: "async",
+      decoding: "sync",
       ...more,
       class: `${coded ? "coded" : ""} ${more.class ?? ""}`,
     });
@@ -197,7 +196,7 @@
     state.previous = Math.min(state.previous, state.tiles.length - 1);
     const frame = view(
       state.tiles[state.current],
-      ...state.tiles.map((tile) => image(tile, { loading: "eager" })),
+      ...state.tiles.map((tile) => image(tile)),
       tag("left", state.tiles[state.current]),
     );
     frame.classList.add("flick");
