@@ -1,0 +1,126 @@
+#include "run/pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "image/image.h"
+#include "metrics/error_map.h"
+#include "run/files.h"
+
+namespace penumbra::run {
+namespace {
+
+// Components of an array of vectors as named channels.
+void add_vector_channels(ExrImage& image, std::span<const Vec4f> values) {
+  for (const int c : {0, 1, 2}) {
+    FloatChannel channel{std::string(1, "XYZ"[c]), std::vector<float>(values.size())};
+    std::ranges::transform(values, channel.values.begin(), [c](const Vec4f& v) { return v[c]; });
+    image.floats.push_back(std::move(channel));
+  }
+}
+
+ExrImage color_image(const std::vector<Vec3f>& linear, int width, int height) {
+  ExrImage image{width, height, {}, {}};
+  for (const int c : {0, 1, 2}) {
+    FloatChannel channel{std::string(1, "RGB"[c]), std::vector<float>(linear.size())};
+    std::ranges::transform(linear, channel.values.begin(), [c](const Vec3f& v) { return v[c]; });
+    image.floats.push_back(std::move(channel));
+  }
+  return image;
+}
+
+}  // namespace
+
+Pictures::Pictures(std::filesystem::path run_folder, std::vector<std::string> names)
+    : root_(std::move(run_folder)), names_(std::move(names)) {}
+
+bool Pictures::wanted(const char* name) const { return std::ranges::find(names_, name) != names_.end(); }
+
+std::string Pictures::make(const std::string& folder, const char* file) const {
+  make_folder(root_ / folder);
+  return folder + "/" + file;
+}
+
+std::string Pictures::visibility(const std::string& folder, const ViewSamplesHost& view,
+                                 std::span<const float> v) const {
+  const std::string path = make(folder, "visibility.exr");
+  write_exr_gray(root_ / path, view.width, view.height, v);
+  return path;
+}
+
+void Pictures::shaded(nlohmann::json& images, const char* name, const std::string& folder,
+                      const ViewSamplesHost& view, const Frame& frame, std::span<const float> v) const {
+  const auto linear = shade(view, frame, v);
+  const std::string exr = make(folder, "shaded.exr"), png = make(folder, "shaded.png");
+  write_exr(root_ / exr, color_image(linear, view.width, view.height));
+  write_png(root_ / png, tonemap(linear, view.width, view.height));
+  images[name] = png;
+  images[std::string(name) + "_exr"] = exr;
+}
+
+std::string Pictures::mask(const std::string& folder, const PointRun& run, const Output& output) const {
+  ExrImage image{run.point().width, run.point().height, {}, {}};
+  const std::size_t pixels = output.visibility.size(), words = output.mask.size() / pixels;
+  for (std::size_t w = 0; w < words; ++w) {
+    UintChannel channel{fmt::format("w{}", w), std::vector<uint32_t>(pixels)};
+    for (std::size_t i = 0; i < pixels; ++i) channel.values[i] = output.mask[i * words + w];
+    image.uints.push_back(std::move(channel));
+  }
+  const std::string path = make(folder, "mask.exr");
+  write_exr(root_ / path, image);
+  return path;
+}
+
+void Pictures::view_pictures(nlohmann::json& images, const std::string& folder,
+                             const ViewSamplesHost& view) const {
+  const auto write_once = [&](const char* name, const char* file, auto&& fill) {
+    if (!wanted(name)) return;
+    const std::string path = make(folder, file);
+    images[name] = path;
+    if (std::filesystem::exists(root_ / path)) return;
+    ExrImage image{view.width, view.height, {}, {}};
+    fill(image);
+    write_exr(root_ / path, image);
+  };
+  write_once("position", "position.exr", [&](ExrImage& image) { add_vector_channels(image, view.position); });
+  write_once("normal", "normal.exr",
+             [&](ExrImage& image) { add_vector_channels(image, view.geometric_normal); });
+  write_once("triangle", "triangle.exr", [&](ExrImage& image) {
+    image.uints.push_back({"Y", std::vector<uint32_t>(view.triangle.begin(), view.triangle.end())});
+  });
+}
+
+nlohmann::json Pictures::write(const PointRun& run, const Output& output, std::span<const uint8_t> evaluated,
+                               std::span<const float> truth, const std::string& truth_name,
+                               const ViewSamplesHost& view, const std::string& view_name) const {
+  nlohmann::json images = nlohmann::json::object();
+  if (names_.empty()) return images;
+  const std::string folder = "images/" + run.point().id, truth_folder = "images/reference-" + truth_name;
+  const Frame& frame = run.lit().current;
+  if (wanted("visibility")) {
+    images["visibility"] = visibility(folder, view, output.visibility);
+    const std::string path = truth_folder + "/visibility.exr";
+    images["reference"] =
+        std::filesystem::exists(root_ / path) ? path : visibility(truth_folder, view, truth);
+  }
+  if (wanted("shaded")) {
+    shaded(images, "shaded", folder, view, frame, output.visibility);
+    if (std::filesystem::exists(root_ / truth_folder / "shaded.png"))
+      images["reference_shaded"] = truth_folder + "/shaded.png";
+    else
+      shaded(images, "reference_shaded", truth_folder, view, frame, truth);
+  }
+  if (wanted("error")) {
+    images["error"] = make(folder, "error.png");
+    write_png(root_ / images["error"].get<std::string>(),
+              error_map({view.width, view.height, truth, evaluated},
+                        {view.width, view.height, output.visibility, evaluated}, error_picture_range));
+  }
+  if (wanted("mask") && !output.mask.empty()) images["mask"] = mask(folder, run, output);
+  view_pictures(images, "images/view-" + view_name, view);
+  return images;
+}
+
+}  // namespace penumbra::run

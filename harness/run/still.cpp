@@ -1,0 +1,37 @@
+#include "run/still.h"
+
+#include "run/judge.h"
+#include "run/point_run.h"
+
+namespace penumbra::run {
+
+Still render_still(const Point& point, const Registry& registry,
+                   const std::vector<std::filesystem::path>& scene_search, const std::string& device_name) {
+  const Scene scene = Scene::load(point.scene, scene_search);
+  gpu::Device device(gpu::DeviceOptions{device_name, false});
+  gpu::PassRecorder passes(device);
+  Costs costs;
+  Heartbeat heartbeat;
+  View view(scene, point, passes, costs);
+  OutputBuffers outputs;
+  PointRun run(point, find_technique(registry, point.technique), view, outputs, passes, heartbeat, costs,
+               TimeLimits{});
+  Still still;
+  still.width = point.width;
+  still.height = point.height;
+  if (const auto reason = run.unsupported()) {
+    still.unsupported = *reason;
+    return still;
+  }
+  run.prepare();
+  const auto evaluated = evaluated_pixels(view.matched(run.lit(), point, run.origin()), run.output().claimed);
+  finish_output(run.output(), evaluated, point.width);
+  still.visibility = run.output().visibility;
+  still.shaded = shade(view.samples().host(), run.lit().current, still.visibility);
+  const FrameTimes times = run.frame();
+  still.passes = times.build;
+  still.passes.insert(still.passes.end(), times.render.begin(), times.render.end());
+  return still;
+}
+
+}  // namespace penumbra::run
