@@ -33,7 +33,7 @@ std::string dump_document(const fs::path& page, const fs::path& profile) {
   const std::string program = browser();
   if (program.empty()) {
     ADD_FAILURE()
-        << "no Chromium: install the package `chromium` (see scripts/packages), or name one in $CHROMIUM";
+        << "no Chromium: install the package `chromium` (see scripts/packages.list), or name one in $CHROMIUM";
     return {};
   }
   const std::string command =
