@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/sweep.h"
+#include "scene/scene_schema.h"
 
 namespace penumbra {
 namespace {
@@ -131,6 +132,8 @@ json sweep_schema(const Registry& registry) {
   return out;
 }
 
-std::vector<SchemaFile> schema_files(const Registry& registry) { return {{"sweep", sweep_schema(registry)}}; }
+std::vector<SchemaFile> schema_files(const Registry& registry) {
+  return {{"sweep", sweep_schema(registry)}, {"scene", scene_schema()}};
+}
 
 }  // namespace penumbra
