@@ -159,9 +159,8 @@ class Supervisor {
       ++outcome_.kept;
       finished_[i] = true;
       pending.erase(i);
-    } else if (kind == "costs") {
-      run_file_.add_costs(event.at("costs"));
     } else if (kind == "batch_done") {
+      run_file_.add_costs(event.at("costs"));
       batch_done_ = true;
     }
   }

@@ -14,16 +14,15 @@ std::size_t layer_of(const Fitted& fitted, double view_depth, Vec3d from_light) 
   return layer;
 }
 
-// Texels per pixel step in x or y along the receiver's plane.
-Vec2d texel_step(const Mat4d& m, double map_size, Vec3d p, Vec3d q) {
-  const Vec4d a = m * Vec4d{p.x, p.y, p.z, 1}, b = m * Vec4d{q.x, q.y, q.z, 1};
-  return {0.5 * map_size * (b.x / b.w - a.x / a.w), 0.5 * map_size * (b.y / b.w - a.y / a.w)};
+Vec2d texel_step(const FittedLayer& layer, double map_size, Vec3d p, Vec3d q) {
+  const Vec3d a = map_point(layer, p), b = map_point(layer, q);
+  return {0.5 * map_size * (b.x - a.x), 0.5 * map_size * (b.y - a.y)};
 }
 
 }  // namespace
 
-double texel_in_pixels(const Mat4d& clip_from_world, double map_size, const Camera& camera, int width,
-                       int height, double pixel_x, double pixel_y, Vec3d position, Vec3d normal) {
+double texel_in_pixels(const FittedLayer& layer, double map_size, const Camera& camera, int width, int height,
+                       double pixel_x, double pixel_y, Vec3d position, Vec3d normal) {
   const Vec3d eye(camera.eye);
   const double plane = dot(normal, position - eye);
   // A hundredth of a pixel: the map is differentiated, not stepped over.
@@ -33,16 +32,20 @@ double texel_in_pixels(const Mat4d& clip_from_world, double map_size, const Came
     return eye + d * (plane / dot(normal, d));
   };
   const Vec3d p = hit(pixel_x, pixel_y);
-  const Vec2d u = texel_step(clip_from_world, map_size, p, hit(pixel_x + h, pixel_y));
-  const Vec2d v = texel_step(clip_from_world, map_size, p, hit(pixel_x, pixel_y + h));
+  const Vec2d u = texel_step(layer, map_size, p, hit(pixel_x + h, pixel_y));
+  const Vec2d v = texel_step(layer, map_size, p, hit(pixel_x, pixel_y + h));
   return h / std::sqrt(std::abs(u.x * v.y - u.y * v.x));
 }
 
-Counters count(const Params& params, const Fitted& fitted, const DepthMaps& maps, const RenderInput& last) {
+Counters count(const Params& params, const Fitted& fitted, uint64_t map_bytes, const RenderInput& last) {
   Counters out;
   if (!last.view_samples) return out;
-  out["map_bytes"] = static_cast<double>(maps.image().bytes());
+  out["map_bytes"] = static_cast<double>(map_bytes);
   out["layers"] = static_cast<double>(fitted.layers.size());
+  double warped = 0;
+  for (const FittedLayer& l : fitted.layers) warped += l.warped ? 1 : 0;
+  out["warped_layers"] = warped;
+  if (params.cascades > 1) out["cascade_splits"] = fitted.splits;
   out["six_faces"] = fitted.six_faces ? 1.0 : 0.0;
   const ViewSamplesHost& view = last.view_samples->host();
   const Camera& camera = last.scene_case->frame->camera;
@@ -54,8 +57,7 @@ Counters count(const Params& params, const Fitted& fitted, const DepthMaps& maps
     const FittedLayer& layer = fitted.layers[layer_of(fitted, view.position[i].w, p * l.w - l.xyz())];
     const double x = static_cast<double>(i % static_cast<std::size_t>(view.width)) + 0.5;
     const double y = static_cast<double>(i / static_cast<std::size_t>(view.width)) + 0.5;
-    const double size =
-        texel_in_pixels(layer.clip_from_world, params.map_size, camera, view.width, view.height, x, y, p, n);
+    const double size = texel_in_pixels(layer, params.map_size, camera, view.width, view.height, x, y, p, n);
     if (std::isfinite(size)) sizes.push_back(size);
   }
   if (sizes.empty()) return out;

@@ -3,6 +3,8 @@
 #include <array>
 
 #include "shaders/shadow_map_depth.h"
+#include "shaders/shadow_map_log_depth_frag.h"
+#include "shaders/shadow_map_log_depth_vert.h"
 
 namespace penumbra::shadow_map {
 namespace {
@@ -53,6 +55,15 @@ void DepthMaps::setup(gpu::Device& device) {
   desc.depth_clamp = true;  // casters before the near plane still cast
   desc.depth_bias = true;
   pipeline_ = gpu::GraphicsPipeline(device, desc);
+  if (params_.warp == Warp::log) {
+    desc.vertex = shadow_map_log_depth_vert_spv, desc.fragment = shadow_map_log_depth_frag_spv;
+    desc.push_bytes = sizeof(LogDepthPush);
+    desc.vertex_strides.clear();
+    desc.cull = VK_CULL_MODE_NONE;  // of the triangles' rectangles; the shader culls triangles
+    desc.depth_bias = false;        // the shader's too
+    desc.constants = {{0, static_cast<uint32_t>(params_.caster_faces)}};
+    log_pipeline_ = gpu::GraphicsPipeline(device, desc);
+  }
   layers_ = gpu::Buffer(device, max_layers * sizeof(MapLayer), gpu::Memory::upload, "shadow map layers");
 }
 
@@ -69,17 +80,40 @@ void DepthMaps::ensure_image(gpu::Device& device, uint32_t layers, gpu::PassReco
   passes.device_pass("depth_map", [&](gpu::Commands& commands) { commands.initialise(image_); });
 }
 
+void DepthMaps::draw_layer(gpu::Commands& commands, const Case& c, const FittedLayer& layer) {
+  const GeometryOnDevice& geometry = *c.geometry;
+  if (layer.log.scale != 0) {
+    const LogDepthPush push{to_float(layer.clip_from_world),      geometry.positions.address(),
+                            geometry.indices.address(),           static_cast<float>(layer.log.scale),
+                            static_cast<float>(layer.log.offset), params_.slope_bias,
+                            static_cast<float>(params_.map_size)};
+    commands.bind(log_pipeline_);
+    commands.push(log_pipeline_, &push, sizeof push);
+    commands.draw(6 * geometry.triangle_count);
+    return;
+  }
+  const std::array buffers{geometry.positions.handle()};
+  const DepthPush push{to_float(layer.clip_from_world)};
+  commands.bind(pipeline_);
+  commands.push(pipeline_, &push, sizeof push);
+  commands.set_depth_bias(0, params_.slope_bias);
+  commands.vertex_buffers(buffers);
+  commands.draw_indexed(geometry.indices, 3 * geometry.triangle_count);
+}
+
 void DepthMaps::draw(const Case& c, const Fitted& fitted, gpu::PassRecorder& passes) {
   ensure_image(*c.device, static_cast<uint32_t>(fitted.layers.size()), passes);
   passes.host_pass("fit", [&] {
+    const Light& light = c.frame->light;
     for (std::size_t i = 0; i < fitted.layers.size(); ++i) {
       const FittedLayer& l = fitted.layers[i];
-      layers_.view<MapLayer>()[i] =
-          make_layer(l.clip_from_world, fitted.light, l.frame, l.view_lo, l.view_hi);
+      const bool sphere = light.kind == LightKind::sphere;
+      const Vec3d u = sphere ? l.frame.right * (2.0 * double(light.radius)) : Vec3d(light.edge_u);
+      const Vec3d v = sphere ? l.frame.down * (2.0 * double(light.radius)) : Vec3d(light.edge_v);
+      layers_.view<MapLayer>()[i] = make_layer(l, fitted.light, params_.map_size, u, v);
     }
   });
   const auto size = static_cast<uint32_t>(params_.map_size);
-  const std::array buffers{c.geometry->positions.handle()};
   passes.device_pass("depth_map", [&](gpu::Commands& commands) {
     for (uint32_t i = 0; i < fitted.layers.size(); ++i) {
       if (!fitted.layers[i].used) continue;
@@ -87,12 +121,7 @@ void DepthMaps::draw(const Case& c, const Fitted& fitted, gpu::PassRecorder& pas
       target.view = image_.view(i);
       target.clear.depthStencil = {1, 0};
       commands.begin_rendering(size, size, {}, &target, vulkan_format(params_.depth_format));
-      commands.bind(pipeline_);
-      const DepthPush push{to_float(fitted.layers[i].clip_from_world)};
-      commands.push(pipeline_, &push, sizeof push);
-      commands.set_depth_bias(0, params_.slope_bias);
-      commands.vertex_buffers(buffers);
-      commands.draw_indexed(c.geometry->indices, 3 * c.geometry->triangle_count);
+      draw_layer(commands, c, fitted.layers[i]);
       commands.end_rendering();
     }
   });

@@ -23,10 +23,11 @@ class DepthMaps {
   uint64_t bytes() const { return image_.bytes() + layers_.bytes(); }
 
  private:
+  void draw_layer(gpu::Commands& commands, const Case& c, const FittedLayer& layer);
   void ensure_image(gpu::Device& device, uint32_t layers, gpu::PassRecorder& passes);
 
   Params params_;
-  gpu::GraphicsPipeline pipeline_;
+  gpu::GraphicsPipeline pipeline_, log_pipeline_;
   gpu::Image image_;
   gpu::Buffer layers_;
 };

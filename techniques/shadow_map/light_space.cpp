@@ -97,12 +97,13 @@ std::optional<Extent> extent_of(const Box& box, const Mat4d& light_from_world, d
   return e;
 }
 
+double inner_share(double map_size, double border) { return std::max(1 - 2 * border / map_size, 0.5); }
+
 Mat4d crop(const Extent& e, double map_size, double border, double least_depth) {
   Extent p = e;
   for (int c = 0; c < 2; ++c) pad(p.lo[c], p.hi[c], 0, 1e-9);
   pad(p.lo.z, p.hi.z, 1e-2, least_depth);
-  // Half the map's width in texels holds half of the extent; the border's texels lie outside.
-  const double inner = std::max(map_size - 2 * border, 0.5 * map_size) / map_size;
+  const double inner = inner_share(map_size, border);
   Mat4d m;
   for (int c = 0; c < 2; ++c) {
     m[c][c] = 2 * inner / (p.hi[c] - p.lo[c]);
@@ -117,7 +118,7 @@ Extent snapped(const Extent& e, double map_size, double border) {
   Extent s = e;
   for (int c = 0; c < 2; ++c) {
     pad(s.lo[c], s.hi[c], 0, 1e-9);
-    const double inner = std::max(map_size - 2 * border, 0.5 * map_size);
+    const double inner = inner_share(map_size, border) * map_size;
     // One texel of room, so that moving the corner to a whole texel keeps all inside.
     const double size = rounded_up((s.hi[c] - s.lo[c]) * inner / (inner - 1));
     const double texel = size / inner;
@@ -127,12 +128,20 @@ Extent snapped(const Extent& e, double map_size, double border) {
   return s;
 }
 
-MapLayer make_layer(const Mat4d& clip_from_world, const LightPoint& light, const LightFrame& frame,
-                    double view_lo, double view_hi) {
-  const Mat4d world_from_clip = inverse(clip_from_world);
-  MapLayer layer{};
-  layer.clip_from_world = to_float(clip_from_world);
-  layer.plane_from_world = to_float(transposed(world_from_clip));
+Vec3d map_point(const FittedLayer& layer, Vec3d p) {
+  const Vec4d c = layer.clip_from_world * row(p, 1);
+  Vec3d m = c.xyz() / c.w;
+  if (layer.log.scale != 0) m.y = layer.log.scale * std::log(-1 / m.y) + layer.log.offset;
+  return m;
+}
+
+MapLayer make_layer(const FittedLayer& layer, const LightPoint& light, double map_size, Vec3d edge_u,
+                    Vec3d edge_v) {
+  const Mat4d world_from_clip = inverse(layer.clip_from_world);
+  const LightFrame& frame = layer.frame;
+  MapLayer out{};
+  out.clip_from_world = to_float(layer.clip_from_world);
+  out.plane_from_world = to_float(transposed(world_from_clip));
   // Distance along the axis of the point that (clip x, clip y, depth, 1) unprojects to.
   const double offset = light.at_infinity() ? 0 : -dot(frame.forward, light.towards.xyz());
   const Vec4d linear = row(frame.forward, offset);
@@ -141,11 +150,36 @@ MapLayer make_layer(const Mat4d& clip_from_world, const LightPoint& light, const
     for (int i = 0; i < 4; ++i) numerator[c] += linear[i] * world_from_clip[c][i];
     denominator[c] = world_from_clip[c].w;
   }
-  layer.linear_numerator = to_float4(numerator);
-  layer.linear_denominator = to_float4(denominator);
-  layer.linear_from_world = to_float4(linear);
-  layer.view_range = {static_cast<float>(view_lo), static_cast<float>(view_hi), 0, 0};
-  return layer;
+  // The unprojected point may come with any scale; a common one keeps both in float's range.
+  double largest = 0;
+  for (int c = 0; c < 4; ++c) largest = std::max({largest, std::abs(numerator[c]), std::abs(denominator[c])});
+  for (int c = 0; c < 4; ++c) numerator[c] /= largest, denominator[c] /= largest;
+  out.linear_numerator = to_float4(numerator);
+  out.linear_denominator = to_float4(denominator);
+  out.linear_from_world = to_float4(linear);
+  out.range = to_float4({layer.view_lo, layer.view_hi, layer.linear_lo, layer.linear_hi});
+  out.log_warp = to_float4({layer.log.scale, layer.log.offset, 0, 0});
+  // The map's own scale, texels per tangent: an unwarped clip matrix is crop * frame.
+  const auto texels = [&](Vec3d axis, int r) {
+    Vec3d clip_row{layer.clip_from_world[0][r], layer.clip_from_world[1][r], layer.clip_from_world[2][r]};
+    return 0.5 * map_size * dot(clip_row, axis);
+  };
+  const auto across = [&](Vec3d edge) { return edge - frame.forward * dot(edge, frame.forward); };
+  out.light_texels = to_float4({texels(across(edge_u), 0), texels(across(edge_u), 1),
+                                texels(across(edge_v), 0), texels(across(edge_v), 1)});
+  return out;
+}
+
+std::vector<double> split_depths(Split split, double lambda, int count, double lo, double hi) {
+  std::vector<double> ends;
+  for (int i = 0; i <= count; ++i) {
+    const double t = static_cast<double>(i) / count;
+    const double uniform = lo + (hi - lo) * t, logarithmic = lo * std::pow(hi / lo, t);
+    ends.push_back(split == Split::uniform ? uniform
+                   : split == Split::log   ? logarithmic
+                                           : lambda * logarithmic + (1 - lambda) * uniform);
+  }
+  return ends;
 }
 
 }  // namespace penumbra::shadow_map

@@ -52,6 +52,9 @@ Extent decode(const SampleBounds& bounds);
 // far from the axis (|x/w| or |y/w| > limit) that one map would be mostly waste.
 std::optional<Extent> extent_of(const Box& box, const Mat4d& light_from_world, double limit);
 
+// Share of the map's width inside the border, which takes at most half of it.
+double inner_share(double map_size, double border);
+
 // Scale and offset so that `e` fills the map but for `border` texels on each side, and depth [0, 1]. Depths
 // closer together than `least_depth` are given that much room.
 Mat4d crop(const Extent& e, double map_size, double border, double least_depth);
@@ -61,8 +64,32 @@ Mat4d crop(const Extent& e, double map_size, double border, double least_depth);
 // 2008; Engel 2006].
 Extent snapped(const Extent& e, double map_size, double border);
 
-// All that the device needs of one layer.
-MapLayer make_layer(const Mat4d& clip_from_world, const LightPoint& light, const LightFrame& frame,
-                    double view_lo, double view_hi);
+// y' = scale log(-1 / y) + offset replaces the map's y where scale is not 0: logarithmic maps.
+struct LogWarp {
+  double scale = 0, offset = 0;
+};
+
+// One depth map: the whole map, a cascade or a face.
+struct FittedLayer {
+  LightFrame frame;
+  Mat4d space_from_world;               // light space, after a warp, before cropping
+  Extent extent;                        // what the map covers there
+  double linear_lo = 0, linear_hi = 1;  // and in distance along the frame's axis
+  Mat4d clip_from_world;
+  LogWarp log;
+  double view_lo = -1e30, view_hi = 1e30;
+  bool warped = false;
+  bool used = true;  // false: no view sample looks into it, it need not be drawn
+};
+
+// Map coordinates of a point in [-1, 1], and its depth.
+Vec3d map_point(const FittedLayer& layer, Vec3d p);
+
+// What the device needs of a layer. `edge_u`, `edge_v`: an area light's extents (0: none).
+MapLayer make_layer(const FittedLayer& layer, const LightPoint& light, double map_size, Vec3d edge_u,
+                    Vec3d edge_v);
+
+// Ends of `count` ranges of view depth from `lo` to `hi`: count + 1 values [Zhang2006].
+std::vector<double> split_depths(Split split, double lambda, int count, double lo, double hi);
 
 }  // namespace penumbra::shadow_map

@@ -1,8 +1,10 @@
 #include "techniques/shadow_map/lookup.h"
 
 #include <array>
+#include <bit>
 
 #include "shaders/shadow_map_lookup.h"
+#include "shaders/shadow_map_lookup_moments.h"
 
 namespace penumbra::shadow_map {
 
@@ -30,17 +32,30 @@ std::vector<Vec2f> disc_points(int count) {
   return points;
 }
 
-void Lookup::setup(gpu::Device& device, gpu::PassRecorder& passes) {
-  const bool disc = params_.pcf_pattern == PcfPattern::poisson;
+void Lookup::setup(gpu::Device& device, bool round_light, gpu::PassRecorder& passes) {
+  const auto size = static_cast<uint32_t>(params_.map_size);
+  if (params_.filterable()) {
+    std::vector<gpu::Specialization> constants = moment_constants(params_);
+    constants.push_back({0, size});
+    constants.push_back({1, 0});
+    frustum_ = gpu::ComputePipeline(device, shadow_map_lookup_moments_spv, sizeof(LookupPush), constants);
+    constants.back().value = 1;
+    faces_ = gpu::ComputePipeline(device, shadow_map_lookup_moments_spv, sizeof(LookupPush), constants);
+    return;
+  }
+  const bool disc = params_.pcf_pattern == PcfPattern::poisson, soft = params_.filter == Filter::pcss;
   const std::array images{gpu::ImageUse::sampled_nearest};
   const auto make = [&](bool faces) {
-    const std::array<gpu::Specialization, 6> constants{
-        {{0, static_cast<uint32_t>(params_.map_size)},
+    const std::array<gpu::Specialization, 9> constants{
+        {{0, size},
          {1, faces},
          {2, static_cast<uint32_t>(params_.pcf_kernel)},
          {3, static_cast<uint32_t>(disc ? params_.poisson_samples : 0)},
          {4, params_.poisson_rotation},
-         {5, params_.receiver_plane_bias}}};
+         {5, params_.receiver_plane_bias},
+         {6, static_cast<uint32_t>(soft ? params_.pcss_search : 0)},
+         {7, round_light},
+         {8, std::bit_cast<uint32_t>(static_cast<float>(params_.border_texels() - 1))}}};
     return gpu::ComputePipeline(device, shadow_map_lookup_spv, sizeof(LookupPush), constants, images);
   };
   frustum_ = make(false), faces_ = make(true);
@@ -50,24 +65,25 @@ void Lookup::setup(gpu::Device& device, gpu::PassRecorder& passes) {
 }
 
 void Lookup::run(const RenderInput& in, const Fitted& fitted, const DepthMaps& maps,
-                 gpu::PassRecorder& passes) {
+                 const MomentMaps& moments, gpu::PassRecorder& passes) {
   const ViewSamples& samples = *in.view_samples;
   const auto count = static_cast<uint32_t>(samples.width() * samples.height());
   gpu::ComputePipeline& pipeline = fitted.six_faces ? faces_ : frustum_;
-  const std::array views{maps.image().view()};
-  pipeline.bind_images(views);
-  const LookupPush push{fitted.light.device_towards(),
-                        fitted.light.device_emission(),
-                        samples.position().address(),
-                        samples.origin().address(),
-                        samples.geometric_normal().address(),
-                        maps.layers().address(),
-                        disc_.address(),
-                        in.device.visibility->address(),
-                        count,
-                        static_cast<uint32_t>(fitted.layers.size()),
-                        params_.constant_bias * in.scene_case->frame->geometry.bounds.diagonal(),
-                        0};
+  if (!params_.filterable()) {
+    const std::array views{maps.image().view()};
+    pipeline.bind_images(views);
+  }
+  LookupPush push{};
+  push.light = fitted.light.device_towards(), push.emission = fitted.light.device_emission();
+  push.position = samples.position().address(), push.origin = samples.origin().address();
+  push.normal = samples.geometric_normal().address();
+  push.layers = maps.layers().address(), push.disc = disc_.address(),
+  push.moments = moments.moments().address();
+  push.visibility = in.device.visibility->address();
+  push.count = count, push.layer_count = static_cast<uint32_t>(fitted.layers.size());
+  push.constant_bias = params_.constant_bias * in.scene_case->frame->geometry.bounds.diagonal();
+  push.bleeding_reduction = params_.bleeding_reduction;
+  push.variance_or_bias = params_.filter == Filter::msm ? params_.moment_bias : params_.min_variance;
   passes.device_pass("lookup",
                      [&](gpu::Commands& commands) { commands.dispatch(pipeline, push, (count + 63) / 64); });
 }

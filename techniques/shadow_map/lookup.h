@@ -3,6 +3,7 @@
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
 #include "techniques/shadow_map/depth_maps.h"
+#include "techniques/shadow_map/moment_maps.h"
 
 namespace penumbra::shadow_map {
 
@@ -12,9 +13,10 @@ std::vector<Vec2f> disc_points(int count);
 class Lookup {
  public:
   explicit Lookup(const Params& params) : params_(params) {}
-  void setup(gpu::Device& device, gpu::PassRecorder& passes);
+  void setup(gpu::Device& device, bool round_light, gpu::PassRecorder& passes);
   // Pass "lookup".
-  void run(const RenderInput& in, const Fitted& fitted, const DepthMaps& maps, gpu::PassRecorder& passes);
+  void run(const RenderInput& in, const Fitted& fitted, const DepthMaps& maps, const MomentMaps& moments,
+           gpu::PassRecorder& passes);
   uint64_t bytes() const { return disc_.bytes(); }
 
  private:

@@ -8,6 +8,11 @@ enum class Fit { none, tight, stable };
 enum class DepthFormat { d16, d24, d32 };
 enum class CasterFaces { both, front, back };
 enum class PcfPattern { grid, poisson };
+enum class Warp { none, psm, tsm, lispsm, log };
+enum class Split { uniform, log, practical };
+enum class Filter { pcf, pcss, vsm, evsm, msm };
+enum class Blur { box, gaussian };
+enum class MomentFormat { float32, bits16 };
 
 struct Params {
   int map_size = 1024;
@@ -22,10 +27,30 @@ struct Params {
   int poisson_samples = 16;
   bool poisson_rotation = false;
 
-  // Taps reach this far from the receiver's texel, in texels.
-  double filter_radius() const { return 0.5 * pcf_kernel; }
+  Warp warp = Warp::none;
+  float lispsm_n = 1;
+  float tsm_focus = 0.2f;
+  int cascades = 1;
+  Split cascade_split = Split::practical;
+  float cascade_lambda = 0.5f;
+  Filter filter = Filter::pcf;
+  int pcss_search = 8;
+  float pcss_border = 0.125f;
+  int filter_size = 5;
+  Blur blur = Blur::box;
+  MomentFormat moment_format = MomentFormat::float32;
+  float bleeding_reduction = 0.2f;
+  float min_variance = 1e-6f;
+  float evsm_positive = 40;
+  float evsm_negative = 5;
+  float moment_bias = 3e-7f;
+
+  bool filterable() const { return filter == Filter::vsm || filter == Filter::evsm || filter == Filter::msm; }
   // Texels added around what is fitted, so that taps at its edge find depths.
-  double border_texels() const { return filter_radius() + 1; }
+  double border_texels() const {
+    if (filter == Filter::pcss) return double(pcss_border) * map_size + 1;
+    return 0.5 * (filterable() ? filter_size + 1 : pcf_kernel) + 1;
+  }
 };
 
 const ParamTable<Params>& param_table();

@@ -82,37 +82,65 @@ TEST(LightSpace, SnappedExtentsMoveByWholeTexels) {
   }
 }
 
+struct TestLayer {
+  LightPoint light = point_at({0, 4, 0});
+  FittedLayer fitted;
+  MapLayer device;
+  TestLayer() {
+    fitted.frame = light_frame({0.1, -1, 0.2}, {0, 0, 1});
+    Extent e;
+    e.extend({-1, -1, -1 / 1.5}), e.extend({1, 1, -1 / 6.0});
+    fitted.clip_from_world = crop(e, 512, 3, 0) * light_from_world(light, fitted.frame);
+    device = make_layer(fitted, light, 512, {0.5, 0, 0}, {0, 0, 0.25});
+  }
+};
+
 TEST(LightSpace, LayerUnprojectsToLinearDepth) {
-  const LightPoint light = point_at({0, 4, 0});
-  const LightFrame frame = light_frame({0.1, -1, 0.2}, {0, 0, 1});
-  const Mat4d space = light_from_world(light, frame);
-  Extent e;
-  e.extend({-1, -1, -1 / 1.5}), e.extend({1, 1, -1 / 6.0});
-  const Mat4d clip = crop(e, 512, 3, 0) * space;
-  const MapLayer layer = make_layer(clip, light, frame, 0, INFINITY);
+  const TestLayer t;
   for (const Vec3d p : {Vec3d{0.5, 1, 0.2}, Vec3d{-0.4, 0, 0.7}, Vec3d{0, 2, 0}}) {
-    const Vec3d c = project(clip, p);
+    const Vec3d c = project(t.fitted.clip_from_world, p);
     const Vec4d v{c.x, c.y, c.z, 1};
-    const auto dot4 = [&](Vec4f a) { return a.x * v.x + a.y * v.y + a.z * v.z + a.w * v.w; };
-    const double linear = dot4(layer.linear_numerator) / dot4(layer.linear_denominator);
-    EXPECT_NEAR(linear, dot(frame.forward, p - Vec3d{0, 4, 0}), 1e-5);
-    const Vec4f w = layer.linear_from_world;
-    EXPECT_NEAR(w.x * p.x + w.y * p.y + w.z * p.z + w.w, linear, 1e-5);
+    const auto dot4 = [&](Vec4f a) {
+      return double(a.x) * v.x + double(a.y) * v.y + double(a.z) * v.z + double(a.w) * v.w;
+    };
+    const double linear = dot4(t.device.linear_numerator) / dot4(t.device.linear_denominator);
+    EXPECT_NEAR(linear, dot(t.fitted.frame.forward, p - Vec3d{0, 4, 0}), 1e-5);
+    const Vec4f w = t.device.linear_from_world;
+    EXPECT_NEAR(double(w.x) * p.x + double(w.y) * p.y + double(w.z) * p.z + double(w.w), linear, 1e-5);
   }
 }
 
 TEST(LightSpace, LayerTakesPlanesToTheirSlopeInTheMap) {
-  const LightPoint light = point_at({0, 4, 0});
-  const LightFrame frame = light_frame({0.1, -1, 0.2}, {0, 0, 1});
-  Extent e;
-  e.extend({-1, -1, -1 / 1.5}), e.extend({1, 1, -1 / 6.0});
-  const Mat4d clip = crop(e, 512, 3, 0) * light_from_world(light, frame);
-  const MapLayer layer = make_layer(clip, light, frame, 0, INFINITY);
+  const TestLayer t;
   const Vec3d n = normalize(Vec3d{0.3, 1, -0.2}), p{0.2, 0.5, 0.1}, along = cross(n, Vec3d{1, 0, 0});
   const Vec4f plane{float(n.x), float(n.y), float(n.z), float(-dot(n, p))};
-  const Vec4f t = layer.plane_from_world * plane;
-  const Vec3d a = project(clip, p), b = project(clip, p + along * 0.3);
-  EXPECT_NEAR(b.z - a.z, -(t.x * (b.x - a.x) + t.y * (b.y - a.y)) / t.z, 1e-6);
+  const Vec4f s = t.device.plane_from_world * plane;
+  const Vec3d a = project(t.fitted.clip_from_world, p),
+              b = project(t.fitted.clip_from_world, p + along * 0.3);
+  EXPECT_NEAR(b.z - a.z, -(double(s.x) * (b.x - a.x) + double(s.y) * (b.y - a.y)) / double(s.z), 1e-6);
+}
+
+// The light's edge, seen from a receiver at distance r through a plane at distance b, spans edge (1 / b - 1 /
+// r) of tangent: what light_texels turns into texels.
+TEST(LightSpace, LayerKnowsTheLightsEdgesInTexels) {
+  const TestLayer t;
+  const Vec3d axis = t.fitted.frame.forward, center{0, 4, 0}, edge{0.5, 0, 0};
+  const Vec3d flat = edge - axis * dot(edge, axis), receiver = center + axis * 5.0;
+  const double b = 2, r = 5;
+  // Where the segments from the receiver to the light's ends meet the plane at distance b.
+  const auto through = [&](double s) { return receiver + (center + flat * s - receiver) * ((r - b) / r); };
+  const Vec3d p = map_point(t.fitted, through(-0.5)), q = map_point(t.fitted, through(0.5));
+  EXPECT_NEAR(256 * (q.x - p.x), double(t.device.light_texels.x) * (1 / b - 1 / r), 1e-4);
+  EXPECT_NEAR(256 * (q.y - p.y), double(t.device.light_texels.y) * (1 / b - 1 / r), 1e-4);
+}
+
+TEST(Splits, AreUniformLogarithmicOrTheirBlend) {
+  const std::vector<double> u = split_depths(Split::uniform, 0.5, 4, 1, 81);
+  EXPECT_EQ(u, (std::vector<double>{1, 21, 41, 61, 81}));
+  const std::vector<double> l = split_depths(Split::log, 0.5, 4, 1, 81);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(l[i], std::pow(3.0, double(i)), 1e-9);
+  const std::vector<double> p = split_depths(Split::practical, 0.25, 4, 1, 81);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(p[i], 0.25 * l[i] + 0.75 * u[i], 1e-12);
 }
 
 TEST(LightSpace, BoxAroundTheLightHasNoSingleFrustum) {

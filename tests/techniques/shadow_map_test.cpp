@@ -95,6 +95,42 @@ TEST_P(EachLight, DiffersOnlyWithinTexelAndBiasOfAnEdge) {
   EXPECT_GT(differing, 3);
 }
 
+// While the camera moves, a stable map's texels keep their places on what stands still; a tight one's do not.
+TEST_P(EachLight, StableFitKeepsItsTexelsWhileTheCameraMoves) {
+  const Vec3d fixed{0.3, 0, 0.4};
+  double worst = 0, worst_tight = 0;
+  std::vector<Vec2d> before, before_tight;
+  const auto moved = [](const std::vector<Vec2d>& a, const std::vector<Vec2d>& b) {
+    double off = 0;  // from whole texels
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+      for (double d : {b[i].x - a[i].x, b[i].y - a[i].y}) off = std::max(off, std::abs(d - std::round(d)));
+    return off;
+  };
+  for (int step = 0; step < 4; ++step) {
+    Frame f = box_and_sphere(GetParam());
+    f.camera.eye.x += 0.013f * float(step);
+    f.camera.target.x += 0.013f * float(step);
+    Stage stage(std::move(f), width, height);
+    const auto texels = [&](const char* fit) {
+      std::vector<Vec2d> at;
+      for (const shadow_map::FittedLayer& l :
+           stage.fit(plain({{"map_size", int64_t{256}}, {"fit", fit}})).layers) {
+        const Vec3d m = shadow_map::map_point(l, fixed);
+        if (l.used && std::isfinite(m.x)) at.push_back({128 * m.x, 128 * m.y});
+      }
+      return at;
+    };
+    const std::vector<Vec2d> now = texels("stable"), now_tight = texels("tight");
+    if (step > 0) {
+      worst = std::max(worst, moved(before, now));
+      worst_tight = std::max(worst_tight, moved(before_tight, now_tight));
+    }
+    before = now, before_tight = now_tight;
+  }
+  EXPECT_LT(worst, 1e-3);
+  EXPECT_GT(worst_tight, 0.02);
+}
+
 TEST(ShadowMap, LightAmongTheViewSamplesTakesSixFaces) {
   Stage inside(box_and_sphere(point_light({0, 1.5f, 0.9f})), width, height);
   EXPECT_EQ(number(inside.render(plain()).counters, "six_faces"), 1);

@@ -8,7 +8,7 @@ uint layer_of(float view_depth, vec3 from_light) {
     return 2 * axis + (from_light[axis] < 0 ? 1 : 0);
   }
   uint layer = 0;
-  while (layer + 1 < push.layer_count && view_depth >= push.layers.at[layer].view_range.y) ++layer;
+  while (layer + 1 < push.layer_count && view_depth >= push.layers.at[layer].range.y) ++layer;
   return layer;
 }
 
@@ -16,19 +16,23 @@ struct Receiver {
   uint layer;
   vec2 texel;    // continuous texel coordinates: texel i covers [i, i + 1)
   float depth;   // in the map's depth, bias included
+  float linear;  // distance along the map's axis, bias included
   vec2 slope;    // depth that the receiver's plane gains per texel in x and y
 };
 
 // `point` is the receiver, already moved towards the light.
 Receiver locate(uint layer, vec3 point, vec3 normal) {
   const vec4 clip = push.layers.at[layer].clip_from_world * vec4(point, 1);
-  const vec3 ndc = clip.xyz / clip.w;
+  vec3 ndc = clip.xyz / clip.w;
   // The plane a x + b y + c z + d = 0 gains -a / c in z per unit of x. Edge-on planes are held to the map's whole range.
   const vec4 plane = push.layers.at[layer].plane_from_world * vec4(normal, -dot(normal, point));
-  const vec2 slope = abs(plane.z) > 1e-6 * (abs(plane.x) + abs(plane.y)) ? -plane.xy / plane.z : vec2(0);
-  return Receiver(layer, (ndc.xy * 0.5 + 0.5) * map_size, ndc.z, clamp(slope * (2.0 / map_size), -1, 1));
-}
-
-float depth_at(ivec2 texel, uint layer) {
-  return texelFetch(depth_map, ivec3(clamp(texel, ivec2(0), ivec2(map_size - 1)), layer), 0).r;
+  vec2 slope = abs(plane.z) > 1e-6 * (abs(plane.x) + abs(plane.y)) ? -plane.xy / plane.z : vec2(0);
+  const vec4 log_warp = push.layers.at[layer].log_warp;
+  if (log_warp.x != 0) {
+    slope.y *= -ndc.y / log_warp.x;   // dy / dy' of y' = s log(-1 / y) + o
+    ndc.y = log_warp.x * log(-1 / ndc.y) + log_warp.y;
+  }
+  const vec4 linear = push.layers.at[layer].linear_from_world;
+  return Receiver(layer, (ndc.xy * 0.5 + 0.5) * map_size, ndc.z, dot(linear.xyz, point) + linear.w,
+                  clamp(slope * (2.0 / map_size), -1, 1));
 }

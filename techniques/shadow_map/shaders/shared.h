@@ -22,7 +22,9 @@ struct MapLayer {
   vec4 linear_numerator;  // linear depth = dot(numerator, v) / dot(denominator, v), v = (clip x, clip y, depth, 1)
   vec4 linear_denominator;
   vec4 linear_from_world;  // linear depth of a point = dot(xyz, P) + w: distance along the map's axis
-  vec4 view_range;         // x, y: view depths [x, y) of the receivers that use this layer
+  vec4 range;              // x, y: view depths [x, y) of the receivers that use this layer; z, w: linear depths of 0 and 1
+  vec4 log_warp;           // x, y: a map coordinate y' = x log(-1 / y) + y in place of y; x = 0: y itself
+  vec4 light_texels;       // texels per unit of (1/depth) that the light's edges span: edge u in xy, edge v in zw
 };
 
 // Smallest and largest value over the view samples, as order-preserving integers; `hi` is complemented so that both
@@ -55,6 +57,17 @@ struct DepthPush {
   mat4 clip_from_world;
 };
 
+// The depth pass of logarithmic maps: each triangle as the quad around its curved image.
+struct LogDepthPush {
+  mat4 clip_from_world;
+  ADDRESS_OF(Vec3Array) positions;
+  ADDRESS_OF(UintArray) indices;
+  float log_scale;
+  float log_offset;
+  float slope_bias;
+  float map_size;
+};
+
 struct LookupPush {
   vec4 light;      // as FitQuery
   vec4 emission;
@@ -62,17 +75,29 @@ struct LookupPush {
   ADDRESS_OF(Vec4Array) origin;
   ADDRESS_OF(Vec4Array) normal;
   ADDRESS_OF(LayerArray) layers;
-  ADDRESS_OF(Vec2Array) disc;
+  ADDRESS_OF(Vec2Array) disc;       // percentage-closer filters
+  ADDRESS_OF(UintArray) moments;    // filterable maps
   ADDRESS_OF(FloatArray) visibility;
   uint count;             // pixels
   uint layer_count;
   float constant_bias;    // scene units
+  float bleeding_reduction;
+  float variance_or_bias; // min_variance, or moment_bias
   float unused;
 };
 
+struct MomentsPush {
+  ADDRESS_OF(LayerArray) layers;
+  ADDRESS_OF(UintArray) from;   // blur alone
+  ADDRESS_OF(UintArray) to;
+  uint layer;
+  uint unused;
+};
+
 #ifdef __cplusplus
-static_assert(sizeof(MapLayer) == 192 && sizeof(SampleBounds) == 48 && sizeof(FitQuery) == 112 && sizeof(FitPush) == 40);
-static_assert(sizeof(DepthPush) == 64 && sizeof(LookupPush) == 96);
+static_assert(sizeof(MapLayer) == 224 && sizeof(FitQuery) == 112 && sizeof(SampleBounds) == 48);
+static_assert(sizeof(FitPush) == 40 && sizeof(DepthPush) == 64 && sizeof(LogDepthPush) == 96);
+static_assert(sizeof(LookupPush) == 112 && sizeof(MomentsPush) == 32);
 }  // namespace penumbra::shadow_map
 #endif
 #endif

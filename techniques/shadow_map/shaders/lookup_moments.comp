@@ -1,0 +1,50 @@
+// The lookup in filterable maps: variance [Donnelly2006], exponential variance [Lauritzen2008] and moment shadow
+// maps [Peters2015], interpolated between texels.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define PENUMBRA_COMPUTE
+#include "techniques/shadow_map/shaders/buffers.glsl"
+
+layout(local_size_x = SHADOW_MAP_GROUP) in;
+layout(constant_id = 0) const int map_size = 1024;
+layout(constant_id = 1) const bool faces = false;
+layout(push_constant, scalar) uniform Push { LookupPush push; };
+#include "techniques/shadow_map/shaders/moments.glsl"
+#include "techniques/shadow_map/shaders/layer.glsl"
+
+vec4 interpolated(const Receiver r) {
+  const vec2 corner = floor(r.texel - 0.5), part = r.texel - 0.5 - corner;
+  vec4 sum = vec4(0);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 2; ++x) {
+      const ivec2 at = clamp(ivec2(corner) + ivec2(x, y), ivec2(0), ivec2(map_size - 1));
+      const float weight = (x == 0 ? 1 - part.x : part.x) * (y == 0 ? 1 - part.y : part.y);
+      sum += weight * stored_moments(push.moments, (r.layer * map_size + at.y) * map_size + at.x);
+    }
+  return moments_from_stored(sum);
+}
+
+float bound(vec4 m, float depth) {
+  if (filter_kind == vsm) return chebyshev(m.x, m.y, depth, push.variance_or_bias);
+  if (filter_kind == msm) return four_moments(m.x, m.y, m.z, m.w, depth, push.variance_or_bias);
+  const float p = warp_positive(depth, positive_exponent), n = warp_negative(depth, negative_exponent);
+  return min(chebyshev(m.x, m.y, p, warped_variance(p, positive_exponent, push.variance_or_bias)),
+             chebyshev(m.z, m.w, n, warped_variance(n, negative_exponent, push.variance_or_bias)));
+}
+
+void main() {
+  const uint pixel = linear_invocation();
+  if (pixel >= push.count) return;
+  const vec4 position = push.position.at[pixel];
+  const vec3 origin = push.origin.at[pixel].xyz, normal = push.normal.at[pixel].xyz;
+  const vec3 to_light = push.light.xyz - push.light.w * origin;
+  float visibility = 0;
+  if (position.w > 0 && may_be_lit(position.xyz, normal, push.light, push.emission)) {
+    const uint layer = layer_of(position.w, -to_light);
+    const Receiver r = locate(layer, origin + push.constant_bias * normalize(to_light), normal);
+    const vec2 range = push.layers.at[layer].range.zw;
+    const float depth = clamp((r.linear - range.x) / (range.y - range.x), 0, 1);
+    visibility = reduce_bleeding(bound(interpolated(r), depth), push.bleeding_reduction);
+  }
+  push.visibility.at[pixel] = visibility;
+}
