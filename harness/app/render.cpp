@@ -54,7 +54,8 @@ json config_of(const RenderArguments& arguments, const TechniqueInfo& info, int&
         throw InputError(fmt::format("render: frame: found {}, expected an integer from 0.", value.dump()));
       frame = value;
     } else if (name == "seed" || std::ranges::find(axes, name) != axes.end()) {
-      config[name] = value;
+      // A list of one: [512, 256] by itself would be two resolutions.
+      config[name] = name == "seed" ? value : json::array({value});
     } else {
       params[name] = value;
     }

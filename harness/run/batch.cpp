@@ -249,6 +249,8 @@ void BatchRunner::finish_group() {
     send_({{"event", "result"}, {"record", record}});
   }
   group_.clear();
+  send_({{"event", "costs"}, {"costs", costs_}});  // now: a crash of a later point must not lose them
+  costs_.clear();
 }
 
 void BatchRunner::fail(const Point& point, const std::string& message, const Heartbeat::State& at) {

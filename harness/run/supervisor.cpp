@@ -159,8 +159,9 @@ class Supervisor {
       ++outcome_.kept;
       finished_[i] = true;
       pending.erase(i);
-    } else if (kind == "batch_done") {
+    } else if (kind == "costs") {
       run_file_.add_costs(event.at("costs"));
+    } else if (kind == "batch_done") {
       batch_done_ = true;
     }
   }

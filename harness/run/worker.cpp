@@ -69,9 +69,8 @@ int serve(const Registry& registry, const WorkerSettings& settings, Heartbeat& h
       std::vector<Point> points;
       for (const auto& p : job.at("points")) points.push_back(point_from_json(p));
       const bool healthy = runner.run(points, job.at("done"));
-      send_event({{"event", "batch_done"}, {"costs", costs}});
+      send_event({{"event", "batch_done"}});
       if (!healthy) return 1;
-      costs.clear();
     }
   } catch (const WriteError& e) {
     send_event({{"event", "cannot_write"}, {"message", e.what()}});

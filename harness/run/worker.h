@@ -5,7 +5,7 @@
 // of input. Events:  {"event":"hello", device...} | {"event":"no_device", message}
 //          {"event":"scene", ...}, {"event":"view", scene, ...}   for run.json
 //          {"event":"result", "record":{...}}, {"event":"skip", id}   one of them for each point
-//          {"event":"batch_done", "costs":{...}}, {"event":"cannot_write", message}
+//          {"event":"costs", "costs":{...}}, {"event":"batch_done"}, {"event":"cannot_write", message}
 #pragma once
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
