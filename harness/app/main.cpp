@@ -13,14 +13,6 @@
 
 namespace penumbra {
 
-// Subcommands whose files are not part of this build are left out.
-[[gnu::weak]] void add_run(CLI::App&, Context&);
-[[gnu::weak]] void add_render(CLI::App&, Context&);
-[[gnu::weak]] void add_metrics(CLI::App&, Context&);
-[[gnu::weak]] void add_export(CLI::App&, Context&);
-[[gnu::weak]] void add_report(CLI::App&, Context&);
-[[gnu::weak]] void add_doctor(CLI::App&, Context&);
-
 namespace {
 
 int message(int code, const std::string& text) {
@@ -58,9 +50,9 @@ void declare(CLI::App& app, Context& context) {
   app.add_option("--device", context.device, "Vulkan device: part of its name, or its index");
   app.add_option("--threads", context.threads, "Threads of all host work, Embree and lavapipe (default: all)")
       ->check(CLI::Range(1, 4096));
-  for (auto* add : {&add_run, &add_render, &add_list, &add_describe, &add_validate, &add_metrics, &add_export,
-                    &add_report, &add_doctor})
-    if (add != nullptr) add(app, context);
+  for (const auto& add : {add_run, add_render, add_list, add_describe, add_validate, add_metrics, add_export,
+                          add_report, add_doctor})
+    add(app, context);
 }
 
 void use_threads(const Context& context) {

@@ -103,7 +103,9 @@ void add_run(CLI::App& app, Context& context) {
   sub->add_option("--out", arguments->out, "Folder of the results (default: results/NAME-TIME)");
   sub->add_option("--filter", arguments->filter,
                   "Only points whose technique/scene/key=value,... match this expression");
-  sub->add_option("--set", arguments->set, "/POINTER=JSON: change a value of the config")->take_all();
+  sub->add_option("--set", arguments->set, "/POINTER=JSON: change a value of the config")
+      ->take_all()
+      ->allow_extra_args(false);  // or it would take CONFIG too
   sub->add_option("--shard", arguments->shard, "I/N: the I-th of N parts of the sweep");
   sub->add_flag("--resume", arguments->resume, "Run only what is missing, failed, or out of date in --out");
   sub->add_flag("--dry-run", arguments->dry_run, "Print the plan and do nothing");

@@ -29,8 +29,8 @@ void add_validate(CLI::App& app, Context& context) {
       app.add_subcommand("validate", "Check configs and say what they expand to, without running anything");
   sub->add_option("config", options->configs, "Config files or names")->required();
   sub->add_option("--set", options->plan.set, "/pointer=value: replaces one value of the config")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->take_all()
+      ->allow_extra_args(false);
   sub->add_option("--filter", options->plan.filter, "Only points whose key matches this regular expression");
   sub->callback([options, &context] {
     // All are checked before the first error ends the program, so that one call shows every wrong file.

@@ -6,6 +6,8 @@
 
 namespace penumbra {
 
+double decimal(float value) { return std::stod(fmt::format("{}", value)); }
+
 std::string expectation(const ParamInfo& info) {
   switch (info.type) {
     case ParamType::boolean:

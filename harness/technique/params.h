@@ -29,6 +29,8 @@ struct ParamInfo {
 };
 
 std::string to_text(const ParamValue& value);
+// The double with the float's shortest decimal text: 0.1f gives 0.1, not 0.10000000149.
+double decimal(float value);
 // "an integer from 1 to 256", "one of a, b": the middle of an error message.
 std::string expectation(const ParamInfo& info);
 // The value as `info` types it (an integer is a number too); throws InputError saying what was expected.
@@ -54,7 +56,7 @@ class ParamTable {
     return *this;
   }
   ParamTable& number(const char* name, float P::*field, double lo, double hi, Text t) {
-    add({name, ParamType::number, ParamValue(double{P{}.*field}), lo, hi, {}, t.unit, t.symbol, t.help},
+    add({name, ParamType::number, ParamValue(decimal(P{}.*field)), lo, hi, {}, t.unit, t.symbol, t.help},
         [field](P& p, const ParamValue& v) { p.*field = static_cast<float>(std::get<double>(v)); });
     return *this;
   }

@@ -179,6 +179,69 @@ class Validation(Folder):
         self.wrong(dict(self.GOOD, scene=str(scene)), "scene.json:1:", "no_such_mesh.obj")
 
 
+class Runs(Folder):
+    TINY = {"scene": "torus_knot", "resolution": 32, "mask_size": [2, 4], "techniques": ["ray_tracing"], "images": [],
+            "reference": {"light_samples": 16},
+            "measure": {"warmup": 0, "repetitions": 1, "min_time_s": 0, "max_time_s": 5}}
+
+    def test_a_dry_run_prints_the_plan_and_writes_nothing(self):
+        config = self.write("tiny.json", self.TINY)
+        result = penumbra("run", "--set", "/seed=2", config, "--dry-run", cwd=self.folder)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout.count("ray_tracing/torus_knot/"), 2)
+        self.assertEqual([p.name for p in self.folder.iterdir()], ["tiny.json"])
+
+    def test_a_run_gives_a_result_for_each_point_and_a_command_that_makes_it_again(self):
+        out = self.folder / "out"
+        result = penumbra("run", self.write("tiny.json", self.TINY), "--out", out, "--quiet")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        points = json.loads((out / "results.json").read_text(encoding="utf-8"))["points"]
+        self.assertEqual([p["status"] for p in points], ["ok", "ok"])
+        command = points[1]["command"].replace("penumbra run", f"'{PROGRAM}' run", 1)
+        again = subprocess.run(command + " --dry-run", shell=True, capture_output=True, text=True, check=False)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(again.stdout.count("ray_tracing/torus_knot/"), 1)
+        self.assertIn(points[1]["id"], again.stdout)
+
+    def test_results_that_cannot_be_written_are_exit_code_4(self):
+        config = self.write("tiny.json", self.TINY)
+        self.refused("run", config, "--out", config / "below", code=4, says=["tiny.json"])
+        self.refused("run", config, "--out", "/proc/nowhere", code=4, says=["/proc/nowhere"])
+
+    def test_bad_input_runs_and_writes_nothing(self):
+        out = self.folder / "out"
+        for change in ({"resolution": 0}, {"resolution": 100000}, {"scene": "nowhere"}, {"mask_sise": 4}):
+            self.refused("run", self.write("bad.json", dict(self.TINY, **change)), "--out", out, says=["bad.json:1:"])
+        self.refused("run", self.write("tiny.json", self.TINY), "--out", out, "--filter", "gears", says=["--filter"])
+        self.refused("run", self.folder / "tiny.json", "--out", out, "--set", "mask_size=4", says=["--set"])
+        self.assertFalse(out.exists())
+
+    def test_no_driver_is_exit_code_3(self):
+        nowhere = str(self.folder / "none.json")
+        result = penumbra("run", self.write("tiny.json", self.TINY), "--out", self.folder / "out",
+                          env={"VK_ICD_FILENAMES": nowhere, "VK_DRIVER_FILES": nowhere})
+        self.assertEqual(result.returncode, 3, result.stderr)
+
+
+class Rendering(Folder):
+    def test_a_picture_is_written_where_asked(self):
+        picture = self.folder / "a.png"
+        result = penumbra("render", "torus_knot", "ray_tracing", "resolution=32x24", "mask_size=2", "-o", picture)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(struct.unpack(">II", picture.read_bytes()[16:24]), (32, 24))
+
+    def test_wrong_arguments_write_nothing(self):
+        picture = self.folder / "a.png"
+        for wrong in ("resolution=0", "resolution=100000x100000", "robust=maybe", "robus=true", "robust", "light=none"):
+            self.refused("render", "torus_knot", "ray_tracing", wrong, "-o", picture)
+        self.refused("render", "torus_nkot", "ray_tracing", "-o", picture, says=["'torus_knot'"])
+        self.refused("render", "torus_knot", "ray_tracing", "-o", self.folder / "a.jpg", says=[".png"])
+        self.assertFalse(picture.exists())
+
+    def test_a_picture_that_cannot_be_written_is_exit_code_4(self):
+        self.refused("render", "torus_knot", "ray_tracing", "resolution=8", "-o", "/proc/a.png", code=4)
+
+
 class Metrics(Folder):
     def test_files_that_are_missing_or_no_pictures_are_refused(self):
         self.refused("metrics", self.folder / "a.exr", self.folder / "b.exr", says=["a.exr"])
