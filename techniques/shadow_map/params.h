@@ -43,7 +43,7 @@ struct Params {
   float min_variance = 1e-6f;
   float evsm_positive = 40;
   float evsm_negative = 5;
-  float moment_bias = 3e-7f;
+  float moment_bias = 1e-5f;
 
   bool filterable() const { return filter == Filter::vsm || filter == Filter::evsm || filter == Filter::msm; }
   // Texels added around what is fitted, so that taps at its edge find depths.

@@ -191,6 +191,27 @@ TEST_P(EachMomentMap, GaussianBlurIsNarrowerThanItsBox) {
   EXPECT_GT(partial("gaussian"), 50);
 }
 
+// A lit plane has next to no variance: what rounding leaves of it must not show as noise.
+TEST_P(EachMomentMap, LitGroundStaysLit) {
+  for (const Light& light : {rectangle_light({1, 5, 1}, 1, 0.7f), directional_light({-0.6f, -1, -0.4f})}) {
+    Frame f;
+    add_ground(f.geometry, 4);
+    add_box(f.geometry, {-3.9f, 0.25f, -3.9f}, {-3.5f, 1.5f, -3.5f});
+    f.light = light;
+    f.camera.eye = {0.5f, 3.5f, 6}, f.camera.target = {0.5f, 0, 0.5f};
+    Stage stage(std::move(f), 127, 95);
+    const Rendered r = stage.render({{"filter", GetParam()},
+                                     {"map_size", int64_t{512}},
+                                     {"filter_size", int64_t{9}},
+                                     {"slope_bias", 1.0}});
+    for (std::size_t i = 0; i < stage.pixels(); ++i) {
+      const Vec4f p = stage.view.host().position[i];
+      if (!stage.reference().evaluated[i] || p.x < -2 || p.z < -2) continue;
+      EXPECT_GT(r.visibility[i], 0.95f) << p.x << " " << p.z;
+    }
+  }
+}
+
 // Two sheets over the ground: under the lower one, where the upper one ends, variance maps let light in.
 TEST(ShadowMap, BleedingOfVarianceMapsIsSeenAndReduced) {
   Frame f = half_plane(directional_light({0, -1, 0}), 0.3f);
