@@ -43,6 +43,7 @@ INLINE float four_moments(float m1, float m2, float m3, float m4, float depth, f
   float d22 = max(b3 - b1 * b1 - l21d11 * l21, 1e-20f);
   // Solve for the polynomial whose roots, beside `depth`, support the extremal distribution.
   float c0 = 1.0f, c1 = depth - b0, c2 = depth * depth - b1 - l21 * (depth - b0);
+  if (c2 == 0.0f) return 1.0f;  // `depth` is all that the moments hold
   c1 = c1 / d11;
   c2 = c2 / d22;
   c1 = c1 - l21 * c2;
@@ -57,8 +58,12 @@ INLINE float four_moments(float m1, float m2, float m3, float m4, float depth, f
     b = depth;
     base = 1.0f;
   }
-  float quotient = (a * z2 - b0 * (a + z2) + b1) / ((z2 - b) * (depth - z1));
-  return 1.0f - clamp(base + quotient, 0.0f, 1.0f);
+  float spread = (z2 - b) * (depth - z1);
+  if (spread == 0.0f) return 1.0f - base;  // two of the three depths coincide
+  float quotient = (a * z2 - b0 * (a + z2) + b1) / spread;
+  // Written so that what rounding made of no variance at all (NaN) counts as lit.
+  float shadow = base + quotient;
+  return shadow > 0.0f ? max(1.0f - shadow, 0.0f) : 1.0f;
 }
 
 #undef INLINE
