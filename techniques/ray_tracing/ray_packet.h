@@ -57,6 +57,13 @@ uint32_t below_zero(const float* values) {
   return bits;
 }
 
+// Set bits. Inline, where std::popcount is a call into the compiler's library on a baseline x86-64.
+inline uint32_t bit_count(uint32_t v) {
+  v -= v >> 1 & 0x55555555U;
+  v = (v & 0x33333333U) + (v >> 2 & 0x33333333U);
+  return ((v + (v >> 4)) & 0x0f0f0f0fU) * 0x01010101U >> 24;
+}
+
 // out = from - what, lane by lane: one vector operation, as nothing overlaps.
 template <int N>
 void subtract(float* __restrict out, const float* __restrict from, float what) {

@@ -4,7 +4,7 @@ namespace penumbra::ray_tracing {
 namespace {
 
 // Below this the coherence hint is the faster (README.md has the figures).
-constexpr std::size_t coherent_triangles = 8000;
+constexpr std::size_t coherent_triangles = 20000;
 
 int packet_of(RayTracingParams::Packet packet, int native_packet) {
   switch (packet) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <numbers>
 
 #include "core/parallel.h"
@@ -82,10 +81,9 @@ bool Tracer::lit_side(Vec3f position) const {
 
 float Tracer::visibility(const uint32_t* mask) const {
   if (uniform_) {
-    int blocked = 0;
-    for (std::size_t w = 0; w < words_; ++w) blocked += std::popcount(mask[w]);
-    return static_cast<float>(static_cast<int>(points_.size()) - blocked) /
-           static_cast<float>(points_.size());
+    std::size_t blocked = 0;
+    for (std::size_t w = 0; w < words_; ++w) blocked += bit_count(mask[w]);
+    return static_cast<float>(points_.size() - blocked) / static_cast<float>(points_.size());
   }
   double sum = 0;
   for (std::size_t i = 0; i < points_.size(); ++i)
@@ -163,7 +161,7 @@ void Tracer::trace_light(const Task& task) const {
       rays[(p + 1) % 2].aim(packets_.x(next), packets_.y(next), packets_.z(next));
       const uint32_t used = packets_.used(p), wanted = all_above ? used : used & above_horizon<N>(v, p);
       uint32_t bits = used & ~wanted;
-      if (bits) task.without_ray += static_cast<uint64_t>(std::popcount(bits));
+      if (bits) task.without_ray += bit_count(bits);
       if (wanted) bits |= rays[p % 2].blocked(job.scene, query, wanted) & wanted;
       if (bits) packets_.scatter(p, bits, mask);
     }
@@ -195,7 +193,7 @@ void Tracer::trace_pixels(const Task& task) const {
         if (height(views[lane], l.x, l.y, l.z, scale) > 0) wanted |= 1U << lane;
       rays.aim(l.xyz());
       uint32_t bits = ((1U << used) - 1) & ~wanted;
-      task.without_ray += static_cast<uint64_t>(std::popcount(bits));
+      task.without_ray += bit_count(bits);
       if (wanted) bits |= rays.blocked(job.scene, query, wanted) & wanted;
       for (std::size_t lane = 0; bits; ++lane, bits >>= 1)
         if (bits & 1) masks[lane][s / 32] |= 1U << (s % 32);
