@@ -79,6 +79,23 @@ bool Tracer::lit_side(Vec3f position) const {
   return true;
 }
 
+// Where all light samples lie, beyond any rounding: by the lowest and the highest corner of their bounds.
+Tracer::Horizon Tracer::horizon(const ViewSample& v) const {
+  const Box& box = packets_.bounds();
+  const float scale = at_infinity_ ? 0.0F : 1.0F;
+  const auto height_of = [&](const Vec3f& against, const Vec3f& along) {
+    const auto corner = [](float n, float if_negative, float otherwise) {
+      return n < 0 ? if_negative : otherwise;
+    };
+    return height(v, corner(v.normal.x, against.x, along.x), corner(v.normal.y, against.y, along.y),
+                  corner(v.normal.z, against.z, along.z), scale);
+  };
+  const auto size = [](const Vec3f& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); };
+  const float rounding = 1e-5F * (size(box.lo) + size(box.hi) + size(v.position));
+  if (height_of(box.hi, box.lo) > rounding) return Horizon::above;
+  return height_of(box.lo, box.hi) < -rounding ? Horizon::below : Horizon::across;
+}
+
 float Tracer::visibility(const uint32_t* mask) const {
   if (uniform_) {
     std::size_t blocked = 0;
@@ -107,7 +124,8 @@ std::size_t Tracer::gather(const Job& job, std::size_t tile, uint32_t* pixels) c
     uint32_t* mask = &job.mask[pixel * words_];
     const bool sees = job.view.triangle[pixel] != no_triangle;
     std::fill_n(mask, words_, 0U);
-    if (sees && lit_side(job.view.position[pixel].xyz())) {
+    if (sees && lit_side(job.view.position[pixel].xyz()) &&
+        horizon(view_sample(job.view, pixel)) != Horizon::below) {
       pixels[count++] = static_cast<uint32_t>(pixel);
       continue;
     }
@@ -128,18 +146,6 @@ uint32_t Tracer::above_horizon(const ViewSample& v, std::size_t packet) const {
   return below_zero<N>(minus_height);
 }
 
-// Whether all light samples are above the horizon beyond any rounding: by the lowest corner of their bounds.
-bool Tracer::all_above_horizon(const ViewSample& v) const {
-  const Box& box = packets_.bounds();
-  const float scale = at_infinity_ ? 0.0F : 1.0F;
-  const auto lowest = [](float n, float lo, float hi) { return n > 0 ? lo : hi; };
-  const Vec3f corner{lowest(v.normal.x, box.lo.x, box.hi.x), lowest(v.normal.y, box.lo.y, box.hi.y),
-                     lowest(v.normal.z, box.lo.z, box.hi.z)};
-  const float size = std::abs(corner.x) + std::abs(corner.y) + std::abs(corner.z) + std::abs(v.position.x) +
-                     std::abs(v.position.y) + std::abs(v.position.z);
-  return height(v, corner.x, corner.y, corner.z, scale) > 1e-5F * size;
-}
-
 // One view sample after the other, each packet a group of neighbouring light samples.
 template <int N>
 void Tracer::trace_light(const Task& task) const {
@@ -152,7 +158,7 @@ void Tracer::trace_light(const Task& task) const {
   for (std::size_t i = 0; i < task.pixel_count; ++i) {
     const std::size_t pixel = task.pixels[i];
     const ViewSample v = view_sample(job.view, pixel);
-    const bool all_above = all_above_horizon(v);
+    const bool all_above = horizon(v) == Horizon::above;
     uint32_t* mask = &job.mask[pixel * words_];
     rays[0].start(v.origin), rays[1].start(v.origin);
     rays[0].aim(packets_.x(0), packets_.y(0), packets_.z(0));

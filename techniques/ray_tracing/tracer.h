@@ -45,6 +45,7 @@ class Tracer {
   uint64_t bytes() const;
 
  private:
+  enum class Horizon { above, across, below };
   struct Job;
   struct Task;
   template <int N>
@@ -56,7 +57,7 @@ class Tracer {
   std::size_t gather(const Job& job, std::size_t tile, uint32_t* pixels) const;
   template <int N>
   uint32_t above_horizon(const ViewSample& v, std::size_t packet) const;
-  bool all_above_horizon(const ViewSample& v) const;
+  Horizon horizon(const ViewSample& v) const;
   bool lit_side(Vec3f position) const;
   float visibility(const uint32_t* mask) const;
 
