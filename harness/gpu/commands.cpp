@@ -88,6 +88,18 @@ void Commands::draw_indexed(const Buffer& indices, uint32_t index_count, uint32_
   vkCmdDrawIndexed(handle_, index_count, instances, first_index, 0, 0);
 }
 
+void Commands::draw_indexed_indirect(const Buffer& indices, const Buffer& arguments, uint64_t offset) {
+  vkCmdBindIndexBuffer(handle_, indices.handle(), 0, VK_INDEX_TYPE_UINT32);
+  vkCmdDrawIndexedIndirect(handle_, arguments.handle(), offset, 1, sizeof(VkDrawIndexedIndirectCommand));
+}
+
+void Commands::clear_stencil(uint32_t value, uint32_t width, uint32_t height) {
+  VkClearAttachment clear{};
+  clear.aspectMask = VK_IMAGE_ASPECT_STENCIL_BIT, clear.clearValue.depthStencil.stencil = value;
+  const VkClearRect all{{{0, 0}, {width, height}}, 0, 1};
+  vkCmdClearAttachments(handle_, 1, &clear, 1, &all);
+}
+
 void Commands::draw(uint32_t vertices, uint32_t instances, uint32_t first_vertex) {
   vkCmdDraw(handle_, vertices, instances, first_vertex, 0);
 }
@@ -113,6 +125,15 @@ void Commands::copy_image_to_buffer(const Image& image, const Buffer& buffer, Vk
   region.imageSubresource = {aspect, 0, layer, 1};
   region.imageExtent = {image.desc().width, image.desc().height, 1};
   vkCmdCopyImageToBuffer(handle_, image.handle(), VK_IMAGE_LAYOUT_GENERAL, buffer.handle(), 1, &region);
+}
+
+void Commands::copy_buffer_to_image(const Buffer& buffer, const Image& image, VkImageAspectFlags aspect,
+                                    uint64_t offset) {
+  VkBufferImageCopy region{};
+  region.bufferOffset = offset;
+  region.imageSubresource = {aspect, 0, 0, 1};
+  region.imageExtent = {image.desc().width, image.desc().height, 1};
+  vkCmdCopyBufferToImage(handle_, buffer.handle(), image.handle(), VK_IMAGE_LAYOUT_GENERAL, 1, &region);
 }
 
 void Commands::initialise(const Image& image) {

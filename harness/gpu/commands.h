@@ -56,7 +56,11 @@ class Commands {
   void vertex_buffers(std::span<const VkBuffer> buffers);
   void draw_indexed(const Buffer& indices, uint32_t index_count, uint32_t instances = 1,
                     uint32_t first_index = 0);
+  // One VkDrawIndexedIndirectCommand from `arguments` at `offset`.
+  void draw_indexed_indirect(const Buffer& indices, const Buffer& arguments, uint64_t offset = 0);
   void draw(uint32_t vertices, uint32_t instances = 1, uint32_t first_vertex = 0);
+  // Between begin_rendering and end_rendering: the whole stencil, whatever the load operation was.
+  void clear_stencil(uint32_t value, uint32_t width, uint32_t height);
 
   // Transfers.
   void copy(const Buffer& from, const Buffer& to, uint64_t bytes, uint64_t from_offset = 0,
@@ -66,6 +70,9 @@ class Commands {
   void update(const Buffer& buffer, const void* data, uint64_t bytes, uint64_t offset = 0);
   void copy_image_to_buffer(const Image& image, const Buffer& buffer, VkImageAspectFlags aspect,
                             uint32_t layer = 0);
+  // Layer 0, mip 0; texels tightly packed from `offset`.
+  void copy_buffer_to_image(const Buffer& buffer, const Image& image, VkImageAspectFlags aspect,
+                            uint64_t offset = 0);
 
   // UNDEFINED -> GENERAL, contents lost. All images live in GENERAL.
   void initialise(const Image& image);
