@@ -1,8 +1,10 @@
 #include "techniques/registry.h"
 
 #include "techniques/gears/gears.h"
+#include "techniques/planar_shadow/planar_shadow.h"
 #include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/shadow_map/shadow_map.h"
+#include "techniques/stencil_shadow_volume/stencil_shadow_volume.h"
 
 namespace penumbra {
 
@@ -11,6 +13,8 @@ Registry all_techniques() {
   return {
       ray_tracing_technique(),
       shadow_map_technique(),
+      planar_shadow_technique(),
+      stencil_shadow_volume_technique(),
       gears_technique(),
   };
 }

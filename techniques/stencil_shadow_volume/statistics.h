@@ -1,0 +1,18 @@
+// Statistics of the last frame, as README.md lists them: drawn again into float counts that cannot wrap.
+#pragma once
+#include "techniques/stencil_shadow_volume/stencil_pass.h"
+
+namespace penumbra::shadow_volume {
+
+// What the last frame was drawn with.
+struct LastFrame {
+  RenderInput in;
+  Variant variant = Variant::z_fail;  // zp_plus becomes z_fail where it falls back
+  bool fell_back = false;
+  std::optional<Mat4d> near_plane;
+};
+
+// Extracts the volumes anew where ZP+ is held against z-fail; the next frame does so anyway.
+Counters count(const Params& params, Volumes& volumes, const StencilPass& stencil, const LastFrame& last);
+
+}  // namespace penumbra::shadow_volume

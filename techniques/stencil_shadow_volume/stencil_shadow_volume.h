@@ -1,0 +1,9 @@
+// Shadow volumes counted in the stencil [Crow 1977; Heidmann 1991]: README.md says what is built.
+#pragma once
+#include "technique/technique.h"
+
+namespace penumbra {
+
+TechniqueInfo stencil_shadow_volume_technique();
+
+}  // namespace penumbra

@@ -1,0 +1,48 @@
+// The shadow volumes of one frame, as lists of indices made on the device.
+#pragma once
+#include "gpu/buffer.h"
+#include "gpu/pipeline.h"
+#include "technique/technique.h"
+#include "techniques/common/light_emission.h"
+#include "techniques/stencil_shadow_volume/params.h"
+#include "techniques/stencil_shadow_volume/shaders/shared.h"
+
+namespace penumbra::shadow_volume {
+
+// Whether `adjacency` still welds only vertices that lie at one place.
+bool still_welded(const Adjacency& adjacency, const std::vector<Vec3f>& positions);
+
+class Volumes {
+ public:
+  explicit Volumes(const Params& params) : params_(params) {}
+  void setup(gpu::Device& device);
+  // Which edges have which triangles: the topology alone, kept while welded vertices move together. Passes
+  // "adjacency" (host), "upload_adjacency".
+  void build(const Case& c, gpu::PassRecorder& passes);
+  // Lists for z-pass (sides), ZP+ (and near caps) or z-fail (and far caps). Passes "facing", "silhouettes".
+  void extract(const Case& c, Variant variant, gpu::PassRecorder& passes);
+  // Draws one list of the last extract(), or nothing when it is not part of it.
+  void draw(gpu::Commands& commands, uint32_t list) const;
+  // What volume.vert needs to project them with `clip_from_world`.
+  VolumePush push(const Mat4d& clip_from_world) const;
+
+  Draws read_draws() const { return *static_cast<const Draws*>(draws_read_back_.mapped()); }
+  uint32_t indices_per_quad() const { return indices_per_quad_; }
+  uint64_t bytes() const;
+
+ private:
+  void allocate(const Case& c, bool caps, bool far_caps);
+  ExtractPush extract_push(const Case& c) const;
+
+  Params params_;
+  gpu::ComputePipeline facing_pipeline_, silhouette_pipeline_;
+  Adjacency adjacency_;
+  gpu::Buffer edges_, faces_, facing_, lists_, draws_, draws_read_back_;
+  gpu::Buffer indices_[LIST_COUNT];
+  LightEmission light_;
+  Vec4f apex_;
+  const GeometryOnDevice* geometry_ = nullptr;
+  uint32_t indices_per_quad_ = 0;
+};
+
+}  // namespace penumbra::shadow_volume

@@ -1,0 +1,214 @@
+// Projected shadows against Embree on the plane, and what the projection must and must not do.
+#include "techniques/planar_shadow/planar_shadow.h"
+
+#include <bit>
+
+#include "stencil_planar_stage.h"
+#include "techniques/planar_shadow/receiver.h"
+
+namespace penumbra::test {
+namespace {
+
+const TechniqueInfo info = planar_shadow_technique();
+
+// Triangles appended since the last call become an instance of their own.
+void as_instance(Geometry& g, std::size_t first_triangle, uint32_t instance) {
+  g.triangle_instance.resize(g.triangle_count());
+  for (std::size_t t = first_triangle; t < g.triangle_count(); ++t) g.triangle_instance[t] = instance;
+  g.instance_albedo.resize(std::max<std::size_t>(g.instance_albedo.size(), instance + 1), {0.5f, 0.5f, 0.5f});
+}
+
+Frame box_over_ground(const Light& light) {
+  Frame f;
+  testing::add_ground(f.geometry, 4);
+  as_instance(f.geometry, 0, 0);
+  testing::add_box(f.geometry, {-1, 0.5f, -1}, {1, 1.5f, 1});
+  as_instance(f.geometry, 2, 1);
+  f.light = light;
+  f.camera = camera({2, 4, 6}, {0, 0, 0});
+  return f;
+}
+
+struct Masked {
+  Rendered rendered;
+  std::vector<uint32_t> mask;
+};
+Masked render(Stage& stage, const ParamValues& given) {
+  const std::size_t words = static_cast<std::size_t>(stage.light_samples.mask_words());
+  const gpu::Buffer mask(device(), stage.pixels() * words * 4, gpu::Memory::device, "mask");
+  const std::unique_ptr<Technique> technique = Stage::make(info, given);
+  EXPECT_FALSE(technique->supports(stage.the_case).has_value());
+  technique->setup(stage.the_case, stage.passes), technique->build(stage.the_case, stage.passes);
+  RenderInput in;
+  in.scene_case = &stage.the_case, in.view_samples = &stage.view;
+  in.device.visibility = &stage.visibility, in.device.mask = &mask;
+  technique->render(in, stage.passes);
+  stage.passes.finish();
+  const uint64_t held = device().allocated_bytes();
+  technique->render(in, stage.passes);
+  Masked m;
+  m.rendered.visibility.resize(stage.pixels()), m.mask.resize(stage.pixels() * words);
+  gpu::download(stage.passes, "download", stage.visibility, m.rendered.visibility.data(), 4 * stage.pixels());
+  gpu::download(stage.passes, "download", mask, m.mask.data(), 4 * m.mask.size());
+  EXPECT_EQ(device().allocated_bytes(), held) << "the second frame allocates";
+  m.rendered.counters = technique->counters();
+  m.rendered.evaluated = technique->evaluated_mask();
+  return m;
+}
+
+// Bits on the plane that differ from Embree's; each must be a tie within 1/64 pixel in double precision.
+std::size_t differing_bits(Stage& stage, const Masked& m, std::size_t* compared) {
+  const MatchedReference truth =
+      ReferenceScene(stage.frame.geometry)
+          .matched(stage.view.host(), stage.frame.light, stage.light_samples, ReferenceOrigin::exact);
+  const std::size_t words = static_cast<std::size_t>(stage.light_samples.mask_words());
+  const ViewSamplesHost& view = stage.view.host();
+  std::size_t off = 0;
+  for (std::size_t i = 0; i < stage.pixels(); ++i) {
+    if (!truth.evaluated[i] || !m.rendered.evaluated[i]) continue;
+    for (std::size_t s = 0; s < static_cast<std::size_t>(stage.light_samples.count()); ++s) {
+      const std::size_t word = i * words + s / 32;
+      ++*compared;
+      if (((truth.mask[word] ^ m.mask[word]) >> (s % 32) & 1) == 0) continue;
+      ++off;
+      const Vec4f l = stage.light_samples.points[s];
+      const double reach = stage.on_surface(i, 1.0 / 64);
+      EXPECT_LE(stage.oracle()
+                    .explain(Vec3d(view.position[i].xyz()), {l.x, l.y, l.z, l.w}, view.triangle[i], reach)
+                    .distance,
+                reach)
+          << "pixel " << i << ", light sample " << s;
+    }
+  }
+  return off;
+}
+
+TEST(PlanarShadow, DiffersFromTheReferenceOnThePlaneOnlyInTies) {
+  std::vector<Light> lights{point_light({1.5f, 5, 1}), directional_light({-0.4f, -1, -0.3f}),
+                            testing::rectangle_light({1, 5, 2}, {0, 0, 0}, 1.5f, 1)};
+  Light spot = point_light({1, 5, 2});
+  spot.kind = LightKind::spot, spot.direction = normalize(Vec3f{-1, -5, -2}), spot.cone_degrees = 25;
+  lights.push_back(spot);
+  for (const Light& light : lights) {
+    SCOPED_TRACE(to_string(light.kind));
+    Stage stage(box_over_ground(light), 161, 119);
+    LightSampleRequest request;
+    request.width = 7, request.height = 5;  // more than a word, not a whole number of batches
+    stage.light_samples = make_light_samples(light, request);
+    const Masked m = render(stage, {});
+    std::size_t compared = 0;
+    const std::size_t off = differing_bits(stage, m, &compared);
+    EXPECT_GT(compared, 5000U);
+    EXPECT_LT(double(off), 0.002 * double(compared));
+    for (std::size_t i = 0; i < stage.pixels(); ++i) {  // visibility is the share of clear bits
+      if (!m.rendered.evaluated[i]) continue;
+      const std::size_t words = static_cast<std::size_t>(stage.light_samples.mask_words());
+      int blocked = 0;
+      for (std::size_t w = 0; w < words; ++w) blocked += std::popcount(m.mask[i * words + w]);
+      const double n = stage.light_samples.count();
+      EXPECT_NEAR(double{m.rendered.visibility[i]}, (n - blocked) / n, 1e-6);
+    }
+  }
+}
+
+TEST(PlanarShadow, DiffersOnlyInTiesUnderAMesh) {
+  Stage stage(Scene::load("torus_knot", {"configs/scenes"}).frame(0, "key", "front", -1), 128, 128);
+  stage.light_samples = make_light_samples(stage.frame.light, {3, 3});
+  const Masked m = render(stage, {});
+  std::size_t compared = 0;
+  const std::size_t off = differing_bits(stage, m, &compared);
+  std::printf("[measured] torus knot: %zu of %zu bits differ\n", off, compared);
+  EXPECT_LT(double(off), 1e-3 * double(compared));
+}
+
+TEST(PlanarShadow, NothingFallsOffTheReceiver) {
+  Stage stage(box_over_ground(point_light({1.5f, 5, 1})), 128, 96);
+  stage.light_samples = make_light_samples(stage.frame.light, {});
+  const Masked m = render(stage, {});
+  const ViewSamplesHost& view = stage.view.host();
+  for (std::size_t i = 0; i < stage.pixels(); ++i) {
+    const bool ground = view.triangle[i] != no_triangle && view.triangle[i] < 2;
+    EXPECT_EQ(m.rendered.evaluated[i] != 0, ground) << i;
+    if (!ground) {
+      EXPECT_EQ(m.rendered.visibility[i], 1.0f) << i;
+    }
+  }
+}
+
+TEST(PlanarShadow, OverlappingOccludersDarkenOnce) {
+  Frame once = box_over_ground(point_light({1.5f, 5, 1})), thrice = once;
+  for (float y : {1.0f, 1.3f}) testing::add_box(thrice.geometry, {-0.5f, y, -0.5f}, {0.5f, y + 0.1f, 0.5f});
+  as_instance(thrice.geometry, 14, 1);
+  Stage a(std::move(once), 128, 96), b(std::move(thrice), 128, 96);
+  a.light_samples = make_light_samples(a.frame.light, {}), b.light_samples = a.light_samples;
+  EXPECT_EQ(render(a, {}).rendered.visibility, render(b, {}).rendered.visibility);
+}
+
+// What is beyond the light, or behind the plane, has an image in the projection but casts no shadow.
+TEST(PlanarShadow, OccludersBeyondTheLightOrBehindThePlaneCastNothing) {
+  Frame f;
+  testing::add_ground(f.geometry, 4);
+  as_instance(f.geometry, 0, 0);
+  testing::add_box(f.geometry, {-1, 4, -1}, {1, 5, 1});
+  testing::add_box(f.geometry, {-1, -2, -1}, {1, -1, 1});
+  as_instance(f.geometry, 2, 1);
+  f.light = point_light({0.2f, 3, 0.1f}), f.camera = camera({2, 2.5f, 6}, {0, 0, 0});
+  Stage stage(std::move(f), 128, 96);
+  stage.light_samples = make_light_samples(stage.frame.light, {});
+  const Masked m = render(stage, {});
+  for (std::size_t i = 0; i < stage.pixels(); ++i)
+    if (m.rendered.evaluated[i]) {
+      EXPECT_EQ(m.rendered.visibility[i], 1.0f) << i;
+    }
+}
+
+TEST(PlanarShadow, SaysWhyAReceiverIsNone) {
+  Stage stage(box_over_ground(point_light({1.5f, 5, 1})), 16, 16);
+  const auto reason = [&](int64_t receiver) {
+    return Stage::make(info, {{"receiver", receiver}})->supports(stage.the_case).value_or("");
+  };
+  EXPECT_EQ(reason(-1), "");
+  EXPECT_EQ(reason(0), "");
+  EXPECT_NE(reason(1).find("not flat"), std::string::npos);
+  EXPECT_NE(reason(2).find("2 instances"), std::string::npos);
+  Frame boxes;
+  testing::add_box(boxes.geometry, {-1, 0, -1}, {1, 1, 1});
+  boxes.light = point_light({0, 4, 0});
+  Stage none(std::move(boxes), 16, 16);
+  EXPECT_NE(Stage::make(info, {})->supports(none.the_case).value_or("").find("No instance"),
+            std::string::npos);
+}
+
+TEST(Receiver, IsTheFlatInstanceOfLargestArea) {
+  Geometry g;
+  testing::add_box(g, {-9, 0, -9}, {9, 9, 9});  // larger, not flat
+  as_instance(g, 0, 0);
+  testing::add_triangle(g, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
+  as_instance(g, 12, 1);
+  testing::add_triangle(g, {0, 2, 0}, {3, 2, 0}, {0, 2, 3});
+  as_instance(g, 13, 2);
+  const auto found = planar_shadow::find_receiver(g, -1);
+  ASSERT_TRUE(std::holds_alternative<planar_shadow::Receiver>(found));
+  const auto& r = std::get<planar_shadow::Receiver>(found);
+  EXPECT_EQ(r.instance, 2U);
+  EXPECT_DOUBLE_EQ(r.area, 4.5);
+  EXPECT_DOUBLE_EQ(r.plane.w, 2 * -r.plane.y);
+  EXPECT_EQ(planar_shadow::occluder_indices(g, 2).size(), 39U);
+}
+
+// [Blinn 1988]: the image of a point lies in the plane and on the ray from the light through the point.
+TEST(OntoPlane, MovesPointsAlongTheirRayIntoThePlane) {
+  const Vec4d plane{0.6, 0.8, 0, -1};
+  for (const Vec4d light : {Vec4d{3, 6, -2, 1}, Vec4d{-5, -4, 1, 1}, Vec4d{0, 1, 0, 0}}) {
+    const Mat4d m = planar_shadow::onto_plane(plane, light);
+    const Vec3d q{0.5, 2.1, 0.7};
+    const Vec4d image = m * Vec4d{q.x, q.y, q.z, 1};
+    const Vec3d x = image.xyz() / image.w;
+    EXPECT_NEAR(dot(plane.xyz(), x) + plane.w, 0, 1e-12);
+    const Vec3d along = light.xyz() - q * light.w;
+    EXPECT_NEAR(length(cross(x - q, along)), 0, 1e-12 * length(along) * length(x - q) + 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace penumbra::test
