@@ -53,6 +53,28 @@ TEST_F(Passes, AgreeWithTheWallClock) {
   EXPECT_GE(sum, 0.5 * wall) << "the passes' clock misses most of the work";
 }
 
+// Passes of one submission whose loads differ by known factors: a clock that charges one pass's work to
+// another, or to none, shows here.
+TEST_F(Passes, ChargeEachPassWithItsOwnWork) {
+  const Buffer out(device, 256, Memory::device, "out");
+  const auto load = [&](uint32_t groups) {
+    return [&, groups](Commands& c) { c.dispatch(busy, Busy{out.address(), 8000, groups}, groups); };
+  };
+  passes.device_pass("compile", load(1));
+  passes.take_times();
+  const auto start = std::chrono::steady_clock::now();
+  passes.device_pass("small", load(400));
+  passes.device_pass("large", load(4000));
+  passes.device_pass("middle", load(1600));
+  const std::vector<PassTime> times = passes.take_times();
+  const double wall =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GE(times[0].ms + times[1].ms + times[2].ms, 0.8 * wall);
+  EXPECT_GT(times[1].ms, 3 * times[0].ms) << times[0].ms << " " << times[1].ms << " " << times[2].ms;
+  EXPECT_GT(times[1].ms, 1.3 * times[2].ms);
+  EXPECT_GT(times[2].ms, 1.3 * times[0].ms);
+}
+
 TEST_F(Passes, MoveBytesBothWays) {
   std::vector<uint32_t> in(100000), back(in.size());
   for (std::size_t i = 0; i < in.size(); ++i) in[i] = static_cast<uint32_t>(i * 2654435761U);
