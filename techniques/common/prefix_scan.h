@@ -18,7 +18,8 @@ class PrefixScan {
               uint32_t count) const;
 
  private:
-  uint32_t blocks(uint32_t count) const { return (count + 32 * lanes_ - 1) / (32 * lanes_); }
+  uint32_t per_lane(uint32_t count) const;
+  uint32_t blocks(uint32_t count) const { return count / (per_lane(count) * lanes_) + 1; }
   gpu::ComputePipeline stages_[3];
   uint32_t lanes_ = 8;
 };

@@ -25,6 +25,7 @@ struct PrefixScanConstants {
   PENUMBRA_ADDRESS(Uints) values, sums;  // in; out, one per value
   PENUMBRA_ADDRESS(Uints) blocks;  // total (2 words), then 2 words per block
   PENUMBRA_UINT count, block_count;
+  PENUMBRA_UINT per_lane;  // consecutive values of a lane; a block is a subgroup's
 };
 
 #undef PENUMBRA_UINT

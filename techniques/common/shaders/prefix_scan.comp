@@ -16,8 +16,6 @@ layout(constant_id = 2) const uint DIVISOR = 1;
 
 layout(push_constant) uniform Push { PrefixScanConstants pc; };
 
-const uint PER_LANE = 32u;     // consecutive values of a lane; a block is a subgroup's
-
 uint value(uint i) { return i < pc.count ? (pc.values.at[i] + DIVISOR - 1u) / DIVISOR : 0u; }
 
 void main() {
@@ -38,8 +36,8 @@ void main() {
     return;
   }
   if (block >= pc.block_count) return;
-  uint first = (block * SG + lane) * PER_LANE, low = 0u, high = 0u, mine = 0u;
-  for (uint k = 0u; k < PER_LANE; k++) {
+  uint first = (block * SG + lane) * pc.per_lane, low = 0u, high = 0u, mine = 0u;
+  for (uint k = 0u; k < pc.per_lane; k++) {
     uint v = value(first + k);
     mine += v;
     low += v & 0xffffu;
@@ -60,7 +58,7 @@ void main() {
     inclusive += lane >= s ? other : 0u;
   }
   uint at = pc.blocks.at[2u + 2u * block] + inclusive - mine;
-  for (uint k = 0u; k < PER_LANE; k++) {
+  for (uint k = 0u; k < pc.per_lane; k++) {
     if (first + k < pc.count) pc.sums.at[first + k] = at;
     at += value(first + k);
   }

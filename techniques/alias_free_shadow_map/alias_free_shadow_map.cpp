@@ -1,0 +1,117 @@
+#include "techniques/alias_free_shadow_map/alias_free_shadow_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "shaders/alias_free_resolve.h"
+#include "techniques/alias_free_shadow_map/caster_pass.h"
+
+namespace penumbra {
+namespace alias_free {
+namespace {
+
+class AliasFreeShadowMap final : public Technique {
+ public:
+  explicit AliasFreeShadowMap(const Params& params)
+      : params_(params), fitter_(params), lists_(params), casters_(params) {}
+
+  std::optional<std::string> supports(const Case& c) const override {
+    const uint32_t lanes = c.device->caps().subgroup_size;
+    if (lanes < 4 || !std::has_single_bit(lanes))
+      return fmt::format("The lists' prefix sums need subgroups of 4 lanes or more; this device has {}.", lanes);
+    return {};
+  }
+
+  void setup(const Case& c, gpu::PassRecorder&) override {
+    fitter_.setup(*c.device);
+    lists_.setup(*c.device);
+    casters_.setup(*c.device);
+    resolve_ = gpu::ComputePipeline(*c.device, alias_free_resolve_spv, sizeof(ResolvePush));
+  }
+
+  void build(const Case& c, gpu::PassRecorder& passes) override {
+    if (c.frame->changes.topology || !built_) casters_.build(c, passes);
+    built_ = true;
+  }
+
+  void render(const RenderInput& in, gpu::PassRecorder& passes) override {
+    const LightView& view = fitter_.run(in, passes);
+    lists_.run(in, view, fitter_.view_buffer(), passes);
+    casters_.run(*in.scene_case, fitter_, lists_, passes);
+    resolve(in, passes);
+    last_ = in;
+  }
+
+  Counters counters() override;
+
+  uint64_t structure_bytes() const override { return fitter_.bytes() + lists_.bytes() + casters_.bytes(); }
+
+ private:
+  void resolve(const RenderInput& in, gpu::PassRecorder& passes);
+
+  Params params_;
+  Fitter fitter_;
+  SampleLists lists_;
+  CasterPass casters_;
+  gpu::ComputePipeline resolve_;
+  bool built_ = false;
+  RenderInput last_;
+};
+
+void AliasFreeShadowMap::resolve(const RenderInput& in, gpu::PassRecorder& passes) {
+  ResolvePush push{};
+  push.slots = lists_.slots().address();
+  push.blocked = lists_.blocked().address();
+  push.visibility = in.device.visibility->address();
+  push.count = static_cast<uint32_t>(in.view_samples->width() * in.view_samples->height());
+  passes.device_pass("resolve", [&](gpu::Commands& commands) {
+    commands.dispatch(resolve_, push, (uint64_t{push.count} + group_lanes - 1) / group_lanes);
+  });
+}
+
+Counters AliasFreeShadowMap::counters() {
+  Counters out;
+  if (!last_.view_samples) return out;
+  gpu::PassRecorder passes(*last_.scene_case->device);
+  std::vector<uint32_t> lengths(lists_.texels());
+  if (!lengths.empty()) gpu::download(passes, "download", lists_.lengths(), lengths.data(), lengths.size() * 4);
+  passes.finish();
+  double total = 0, occupied = 0, longest = 0;
+  for (const double n : lengths) total += n, occupied += n > 0, longest = std::max(longest, n);
+  out["list_length_mean"] = occupied > 0 ? total / occupied : 0;
+  out["list_length_max"] = longest;
+  out["occupancy"] = lengths.empty() ? 0 : occupied / static_cast<double>(lengths.size());
+  out["lists_occupied"] = occupied;
+  out["view_samples_listed"] = total;
+  out["list_bytes"] = static_cast<double>(lists_.list_bytes());
+  out["faces"] = lists_.texels() > static_cast<uint32_t>(params_.grid_size * params_.grid_size) ? 6.0 : 1.0;
+  out["pairs_tested"] = casters_.count_pairs(*last_.scene_case, fitter_, lists_, passes);
+  return out;
+}
+
+}  // namespace
+}  // namespace alias_free
+
+TechniqueInfo alias_free_shadow_map_technique() {
+  using alias_free::param_table;
+  TechniqueInfo info;
+  info.name = "alias_free_shadow_map";
+  info.title = "Alias-free shadow maps";
+  info.sources = {"Sintorn2008, sec. 3", "Aila2004", "Johnson2005"};
+  info.params = param_table().infos();
+  info.lights = {LightKind::point,  LightKind::spot,               LightKind::rectangle,
+                 LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
+  info.sampled = false;
+  info.residence = Residence::device;
+  info.origin = [](const ParamValues& values) {
+    return param_table().read(values).origin == alias_free::SegmentOrigin::exact ? Origin::exact : Origin::offset;
+  };
+  info.make = [](const ParamValues& values) {
+    return std::make_unique<alias_free::AliasFreeShadowMap>(param_table().read(values));
+  };
+  return info;
+}
+
+}  // namespace penumbra

@@ -1,0 +1,134 @@
+#include "techniques/alias_free_shadow_map/caster_pass.h"
+
+#include <algorithm>
+
+#include "shaders/alias_free_cast_inner.h"
+#include "shaders/alias_free_cast_items.h"
+#include "shaders/alias_free_cast_triangles.h"
+
+namespace penumbra::alias_free {
+namespace {
+
+// Triangles of one dispatch are so many that their items cannot exceed this, whatever they cover.
+constexpr uint32_t item_capacity = 1 << 21;
+constexpr uint32_t item_turns = 32768;   // view samples of a row in one dispatch; see cast_items.comp
+constexpr uint32_t strips = 64;          // as cast_triangles.comp
+
+}  // namespace
+
+uint32_t CasterPass::items_per_triangle() const {
+  return std::max(small_rows, (static_cast<uint32_t>(params_.grid_size) + item_rows - 1) / item_rows);
+}
+
+void CasterPass::setup(gpu::Device& device) {
+  for (uint32_t counting = 0; counting < 2; ++counting)
+    for (uint32_t inner = 0; inner < 2; ++inner) {
+      const gpu::Specialization constants[] = {{0, counting}, {1, item_turns}, {2, inner}};
+      Kernels& k = kernels_[inner][counting];
+      k.triangles = gpu::ComputePipeline(device, alias_free_cast_triangles_spv, sizeof(CastPush), constants);
+      k.items = gpu::ComputePipeline(device, alias_free_cast_items_spv, sizeof(CastPush), constants);
+      if (inner) inner_[counting] = gpu::ComputePipeline(device, alias_free_cast_inner_spv, sizeof(CastPush), constants);
+    }
+  progress_ = gpu::Buffer(device, sizeof(Progress), gpu::Memory::device, "counts");
+  progress_host_ = gpu::Buffer(device, sizeof(Progress), gpu::Memory::read_back, "counts");
+}
+
+void CasterPass::build(const Case& c, gpu::PassRecorder& passes) {
+  const Geometry& g = c.frame->geometry;
+  triangle_count_ = static_cast<uint32_t>(g.triangle_count());
+  std::vector<uint32_t> bits((g.triangle_count() + 31) / 32 + 1, 0U);
+  for (std::size_t t = 0; t < g.triangle_count(); ++t) {
+    const std::size_t instance = g.triangle_instance.empty() ? 0 : g.triangle_instance[t];
+    const bool closed = instance < g.instance_closed.size() ? g.instance_closed[instance] != 0 : g.closed;
+    if (closed) bits[t / 32] |= 1U << (t % 32);
+  }
+  gpu::ensure(closed_, *c.device, bits.size() * 4, gpu::Memory::device, "closed meshes' triangles");
+  gpu::upload(passes, "upload_closed", closed_, bits.data(), bits.size() * 4);
+  const uint64_t items = std::min<uint64_t>(item_capacity, uint64_t{triangle_count_} * items_per_triangle());
+  gpu::ensure(items_, *c.device, std::max<uint64_t>(items, 1) * 8, gpu::Memory::device, "items of large triangles");
+}
+
+CastPush CasterPass::push(const Case& c, const Fitter& fitter, const SampleLists& lists) const {
+  CastPush pc{};
+  pc.frame = fitter.view_buffer().address();
+  pc.positions = c.geometry->positions.address();
+  pc.indices = c.geometry->indices.address();
+  pc.closed = closed_.address();
+  pc.offsets = lists.offsets().address();
+  pc.lists = lists.lists().address();
+  pc.blocked = lists.blocked().address();
+  pc.items = items_.address();
+  pc.progress = progress_.address();
+  return pc;
+}
+
+void CasterPass::run(const Case& c, const Fitter& fitter, const SampleLists& lists, gpu::PassRecorder& passes) {
+  cast(c, fitter, lists, false, passes);
+}
+
+void CasterPass::cast(const Case& c, const Fitter& fitter, const SampleLists& lists, bool counting,
+                      gpu::PassRecorder& passes) {
+  CastPush pc = push(c, fitter, lists);
+  bool any = false;
+  for (uint32_t f = 0; f < most_faces; ++f) any = any || fitter.used(f);
+  passes.device_pass("cast_begin", [&](gpu::Commands& commands) { commands.fill(progress_, 0); });
+  if (!any || triangle_count_ == 0) return;
+  cast_all(pc, fitter, false, counting, passes);
+  const uint32_t inner = read_progress().inner_count;
+  if (params_.casters == Casters::both || inner == 0) return;
+  if (inner > most_inner) return cast_all(pc, fitter, true, counting, passes);
+  pc.count = triangle_count_;
+  passes.device_pass("cast_inner", [&](gpu::Commands& commands) {
+    commands.dispatch(inner_[counting], pc, (uint64_t{pc.count} + group_lanes - 1) / group_lanes);
+  });
+}
+
+void CasterPass::cast_all(CastPush pc, const Fitter& fitter, bool inner, bool counting, gpu::PassRecorder& passes) {
+  const uint32_t chunk = std::max(item_capacity / items_per_triangle(), 1U);
+  for (pc.face = 0; pc.face < most_faces; ++pc.face)
+    for (pc.first = 0; fitter.used(pc.face) && pc.first < triangle_count_; pc.first += chunk) {
+      pc.count = std::min(chunk, triangle_count_ - pc.first);
+      cast_chunk(pc, inner, counting, passes);
+    }
+}
+
+void CasterPass::cast_chunk(CastPush pc, bool inner, bool counting, gpu::PassRecorder& passes) {
+  const Kernels& kernels = kernels_[inner][counting];
+  pc.groups = (pc.count + group_lanes - 1) / group_lanes;
+  const uint64_t dispatched = (uint64_t{pc.groups} + strips - 1) / strips * strips;
+  passes.device_pass("cast_triangles", [&](gpu::Commands& commands) {
+    commands.fill(progress_, 0, 0, offsetof(Progress, pairs));
+    commands.barrier();
+    commands.dispatch(kernels.triangles, pc, dispatched);
+    commands.barrier();
+    commands.copy(progress_, progress_host_, sizeof(Progress));
+  });
+  passes.finish();
+  pc.count = read_progress().item_count;
+  pc.first = 0;
+  if (pc.count == 0) return;
+  do {
+    passes.device_pass("cast_items", [&](gpu::Commands& commands) {
+      commands.dispatch(kernels.items, pc, (uint64_t{pc.count} * item_rows + group_lanes - 1) / group_lanes);
+      commands.barrier();
+      commands.copy(progress_, progress_host_, sizeof(Progress));
+    });
+    passes.finish();
+    pc.first += item_turns;
+  } while (pc.first < read_progress().longest);
+}
+
+double CasterPass::count_pairs(const Case& c, const Fitter& fitter, const SampleLists& lists,
+                               gpu::PassRecorder& passes) {
+  cast(c, fitter, lists, true, passes);
+  passes.device_pass("read", [&](gpu::Commands& commands) { commands.copy(progress_, progress_host_, sizeof(Progress)); });
+  passes.finish();
+  const Progress p = read_progress();
+  return p.pairs[0] + 4294967296.0 * p.pairs[1];
+}
+
+uint64_t CasterPass::bytes() const {
+  return closed_.bytes() + items_.bytes() + progress_.bytes() + progress_host_.bytes();
+}
+
+}  // namespace penumbra::alias_free

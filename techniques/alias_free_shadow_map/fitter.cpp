@@ -1,0 +1,131 @@
+#include "techniques/alias_free_shadow_map/fitter.h"
+
+#include "shaders/alias_free_bounds.h"
+
+namespace penumbra::alias_free {
+namespace {
+
+constexpr float no_limit = 3e38F;
+// Faces overlap by this much, so that a view sample on the border between two is within the bounds of either.
+constexpr double face_tangent = 1.0001;
+
+}  // namespace
+
+const gpu::Buffer& segment_origins(const Params& params, const ViewSamples& view) {
+  return params.origin == SegmentOrigin::exact ? view.position() : view.origin();
+}
+
+void Fitter::setup(gpu::Device& device) {
+  reduce_ = gpu::ComputePipeline(device, alias_free_bounds_spv, sizeof(BoundsPush));
+  view_buffer_ = gpu::Buffer(device, sizeof(LightView), gpu::Memory::device, "the light's view");
+  bounds_ = gpu::Buffer(device, most_faces * sizeof(SampleBounds), gpu::Memory::device, "view samples' bounds");
+  read_back_ = gpu::Buffer(device, most_faces * sizeof(SampleBounds), gpu::Memory::read_back, "view samples' bounds");
+}
+
+const LightView& Fitter::run(const RenderInput& in, gpu::PassRecorder& passes) {
+  const Case& c = *in.scene_case;
+  const Box& scene = c.frame->geometry.bounds;
+  diagonal_ = double(scene.diagonal());
+  view_ = begin_view(c.frame->light, scene);
+  view_.grid_size = static_cast<uint32_t>(params_.grid_size);
+  view_.both_faces = params_.casters == Casters::both;
+  view_.leave_out_own = params_.origin == SegmentOrigin::exact;
+  std::fill(std::begin(used_), std::end(used_), false);
+  if (params_.fit)
+    fit_samples(in, passes);
+  else
+    passes.host_pass("fit", [&] { fit_scene(c); });
+  passes.device_pass("fit_upload", [&](gpu::Commands& commands) { commands.update(view_buffer_, &view_, sizeof view_); });
+  return view_;
+}
+
+void Fitter::fit_samples(const RenderInput& in, gpu::PassRecorder& passes) {
+  const Frame& frame = *in.scene_case->frame;
+  const auto extent = [&](uint32_t slot) { return decode(read_back_.view<SampleBounds>()[slot]); };
+  reduce("fit_box", most_faces, 1, no_limit, in, passes);
+  bool none = false;
+  passes.host_pass("fit", [&] {
+    const Extent box = extent(0);
+    none = box.empty();
+    for (int i = 0; i < 3 && !none; ++i)
+      view_.sample_lo[i] = static_cast<float>(box.lo[i]), view_.sample_hi[i] = static_cast<float>(box.hi[i]);
+    aim(view_, frame.light, none ? Vec3d{} : 0.5 * (box.lo + box.hi), frame.camera.basis().forward);
+    if (none) set_window(view_, 0, {{0, 0, 0}, {1, 1, 1}}, diagonal_);
+  });
+  if (none) return;
+  const bool parallel = view_.light.w == 0;
+  reduce("fit_window", 0, 1, parallel ? no_limit : static_cast<float>(widest_tangent), in, passes);
+  bool whole = true;
+  passes.host_pass("fit", [&] {
+    whole = extent(0).whole;
+    if (whole)
+      cover(0, extent(0));
+    else
+      aim_cube(view_);
+  });
+  if (whole) return;
+  reduce("fit_window", 0, most_faces, static_cast<float>(face_tangent), in, passes);
+  passes.host_pass("fit", [&] {
+    for (uint32_t f = 0; f < most_faces; ++f) cover(f, extent(f));
+  });
+}
+
+void Fitter::cover(uint32_t face, const Extent& extent) {
+  used_[face] = !extent.empty();
+  set_window(view_, face, used_[face] ? extent : Extent{{0, 0, 0}, {1, 1, 1}}, diagonal_);
+}
+
+// No fitting: the windows cover the scene's bounds, or a spot's cone.
+void Fitter::fit_scene(const Case& c) {
+  const Light& light = c.frame->light;
+  const Box& box = c.frame->geometry.bounds;
+  // Offset origins may leave the bounds.
+  const double offset = params_.origin == SegmentOrigin::exact ? 0 : 2 * double(relative_offset) * diagonal_;
+  const Vec3d out{offset, offset, offset}, center(view_.center.xyz());
+  // Rounded as the device rounds q, so that planes of the scene's bounds stay exact.
+  for (int i = 0; i < 3; ++i) {
+    view_.sample_lo[i] = box.lo[i] - static_cast<float>(offset) - view_.center[i];
+    view_.sample_hi[i] = box.hi[i] + static_cast<float>(offset) - view_.center[i];
+  }
+  const Vec3d lo = Vec3d(box.lo) - out - center, hi = Vec3d(box.hi) + out - center;
+  aim(view_, light, 0.5 * (lo + hi), c.frame->camera.basis().forward);
+  const double cosine = double(view_.emission.w);
+  if (const auto whole = extent_of(view_, lo, hi)) {
+    cover(0, *whole);
+  } else if (light.kind == LightKind::spot && cosine * widest_tangent > std::sqrt(1 - cosine * cosine)) {
+    const double tangent = face_tangent * std::sqrt(1 - cosine * cosine) / cosine;
+    cover(0, {{-tangent, -tangent, 0}, {tangent, tangent, 1}});
+  } else {
+    aim_cube(view_);
+    for (uint32_t f = 0; f < most_faces; ++f)
+      cover(f, {{-face_tangent, -face_tangent, 0}, {face_tangent, face_tangent, 1}});
+  }
+}
+
+void Fitter::reduce(const char* pass, uint32_t first_face, uint32_t faces, float limit, const RenderInput& in,
+                    gpu::PassRecorder& passes) {
+  const ViewSamples& view = *in.view_samples;
+  BoundsPush push{};
+  push.frame = view_buffer_.address();
+  push.position = view.position().address();
+  push.origin = segment_origins(params_, view).address();
+  push.normal = view.geometric_normal().address();
+  push.bounds = bounds_.address();
+  push.count = static_cast<uint32_t>(view.width() * view.height());
+  push.limit = limit;
+  constexpr uint32_t per_group = group_lanes * samples_per_lane;
+  passes.device_pass(pass, [&](gpu::Commands& commands) {
+    commands.update(view_buffer_, &view_, sizeof view_);
+    commands.fill(bounds_, 0xffffffffU);
+    commands.barrier();
+    for (uint32_t i = 0; i < faces; ++i) {
+      push.face = first_face + i;
+      commands.dispatch(reduce_, push, (push.count + per_group - 1) / per_group);
+    }
+    commands.barrier();
+    commands.copy(bounds_, read_back_, bounds_.bytes());
+  });
+  passes.finish();
+}
+
+}  // namespace penumbra::alias_free

@@ -1,0 +1,38 @@
+// The light's view: where lists lie. Host side, double precision, no device.
+#pragma once
+#include <optional>
+
+#include "core/vec.h"
+#include "scene/light.h"
+#include "techniques/alias_free_shadow_map/shaders/shared.h"
+
+namespace penumbra::alias_free {
+
+// Widest |u| and |v| of one window; a light whose view samples need more gets six faces.
+inline constexpr double widest_tangent = 2;
+
+// Box of q, or bounds (u, v, depth) in a face.
+struct Extent {
+  Vec3d lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
+  bool whole = true;   // false: a view sample was beyond the limit
+  bool empty() const { return !(lo.x <= hi.x); }
+  void extend(Vec3d p) { lo = min(lo, p), hi = max(hi, p); }
+};
+Extent decode(const SampleBounds& bounds);
+
+// Light, emission and centre; no faces yet. Area lights are seen from their centre. `scene`: the scene's bounds.
+LightView begin_view(const Light& light, const Box& scene);
+
+// One face: directional and spot lights look along their axis, others along `towards` (relative to the centre).
+// `hint` becomes the face's v axis as far as it can.
+void aim(LightView& view, const Light& light, Vec3d towards, Vec3d hint);
+// Six: the sides of a cube.
+void aim_cube(LightView& view);
+
+// What the corners of a box (in q) cover of face 0; nothing when they do not all lie before the light within the limit.
+std::optional<Extent> extent_of(const LightView& view, Vec3d lo, Vec3d hi);
+
+// The window of a face: `extent`, padded by what rounding may add.
+void set_window(LightView& view, uint32_t face, const Extent& extent, double scene_diagonal);
+
+}  // namespace penumbra::alias_free

@@ -1,0 +1,19 @@
+// What alias_free_shadow_map can be told. Meaning, unit and range of each field stand in params.cpp, once.
+#pragma once
+#include "technique/params.h"
+
+namespace penumbra::alias_free {
+
+enum class SegmentOrigin { exact, offset };
+enum class Casters { back, both };
+
+struct Params {
+  int grid_size = 512;
+  bool fit = true;
+  Casters casters = Casters::back;
+  SegmentOrigin origin = SegmentOrigin::exact;
+};
+
+const ParamTable<Params>& param_table();
+
+}  // namespace penumbra::alias_free

@@ -1,0 +1,39 @@
+// The lists of view samples: one dense array, and offset and length per texel [Sintorn2008, sec. 3.1].
+#pragma once
+#include "gpu/pass_recorder.h"
+#include "gpu/pipeline.h"
+#include "technique/technique.h"
+#include "techniques/alias_free_shadow_map/params.h"
+#include "techniques/alias_free_shadow_map/shaders/shared.h"
+#include "techniques/common/prefix_scan.h"
+
+namespace penumbra::alias_free {
+
+class SampleLists {
+ public:
+  explicit SampleLists(const Params& params) : params_(params) {}
+  void setup(gpu::Device& device);
+  // Passes "count", "scan", "fill". All bits of blocked() are 0 afterwards.
+  void run(const RenderInput& in, const LightView& view, const gpu::Buffer& view_buffer, gpu::PassRecorder& passes);
+
+  const gpu::Buffer& lengths() const { return lengths_; }   // per texel, and one 0
+  const gpu::Buffer& offsets() const { return offsets_; }   // per texel, and the end of the last
+  const gpu::Buffer& slots() const { return slots_; }       // per pixel: place in the array, no_slot
+  const gpu::Buffer& lists() const { return lists_; }       // q, triangle
+  const gpu::Buffer& blocked() const { return blocked_; }   // a bit per place
+  uint32_t texels() const { return texels_; }
+  uint64_t bytes() const;
+  // Offsets, lengths and the arrays of the lists themselves.
+  uint64_t list_bytes() const;
+
+ private:
+  void allocate(gpu::Device& device, uint32_t pixels);
+
+  Params params_;
+  gpu::ComputePipeline bin_[2];
+  PrefixScan scan_;
+  gpu::Buffer lengths_, offsets_, scratch_, pixel_texels_, slots_, lists_, blocked_;
+  uint32_t texels_ = 0;
+};
+
+}  // namespace penumbra::alias_free

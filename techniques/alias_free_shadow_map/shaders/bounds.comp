@@ -1,0 +1,60 @@
+// Bounds of the view samples that face the light: the box of their q, or what they cover of a face.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "techniques/alias_free_shadow_map/shaders/buffers.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { BoundsPush push; };
+
+shared vec3 group_lo[group_lanes];
+shared vec3 group_hi[group_lanes];
+
+// Integers in the order of the floats.
+uint ordered(float f) {
+  const uint u = floatBitsToUint(f);
+  return (u & 0x80000000u) != 0u ? ~u : u | 0x80000000u;
+}
+
+void main() {
+  const uint slot = push.face == most_faces ? 0u : push.face;
+  const float infinity = uintBitsToFloat(0x7f800000u);
+  const uint lane = gl_LocalInvocationIndex;
+  const bool parallel = at_infinity(push.frame), cube = push.frame.f.face_count > 1u;
+  const vec4 light = push.frame.f.light, emission = push.frame.f.emission;
+  const vec3 center = push.frame.f.center.xyz;
+  const Face face = push.frame.f.faces[slot];
+  vec3 lo = vec3(infinity), hi = vec3(-infinity);
+  bool outside = false;
+  const uint first = linear_group() * group_lanes * samples_per_lane + lane;
+  for (uint i = 0u; i < samples_per_lane; ++i) {
+    const uint pixel = first + i * group_lanes;
+    if (pixel >= push.count) break;
+    const vec4 position = push.position.at[pixel];
+    const vec3 q = push.origin.at[pixel].xyz - center;
+    bool counts = position.w > 0.0 && may_be_lit(position.xyz, push.normal.at[pixel].xyz, light, emission);
+    vec3 p = q;
+    if (push.face != most_faces) {
+      p = project(face, parallel, q);
+      counts = counts && (!cube || cube_face(q) == push.face);
+      const bool inside = (parallel || p.z > 0.0) && abs(p.x) <= push.limit && abs(p.y) <= push.limit;
+      outside = outside || (counts && !inside);
+      counts = counts && inside;
+    }
+    lo = counts ? min(lo, p) : lo;
+    hi = counts ? max(hi, p) : hi;
+  }
+  if (outside) push.bounds.at[slot].outside = 0u;
+  group_lo[lane] = lo;
+  group_hi[lane] = hi;
+  for (uint width = group_lanes / 2u; width > 0u; width /= 2u) {
+    barrier();
+    if (lane < width) {
+      group_lo[lane] = min(group_lo[lane], group_lo[lane + width]);
+      group_hi[lane] = max(group_hi[lane], group_hi[lane + width]);
+    }
+  }
+  if (lane == 0u && group_lo[0].x <= group_hi[0].x)
+    for (int c = 0; c < 3; ++c) {
+      atomicMin(push.bounds.at[slot].lo[c], ordered(group_lo[0][c]));
+      atomicMin(push.bounds.at[slot].hi[c], ~ordered(group_hi[0][c]));
+    }
+}

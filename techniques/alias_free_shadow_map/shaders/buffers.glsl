@@ -1,0 +1,35 @@
+// Buffers of the room, and the light as its kernels see it.
+#define PENUMBRA_COMPUTE
+#include "gpu/shaders/common.glsl"
+layout(buffer_reference) buffer FrameRef;
+layout(buffer_reference) buffer BoundsArray;
+layout(buffer_reference) buffer ItemArray;
+layout(buffer_reference) buffer ProgressRef;
+#include "techniques/alias_free_shadow_map/shaders/shared.h"
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer FrameRef { LightView f; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer BoundsArray { SampleBounds at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer ItemArray { uvec2 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ProgressRef { Progress p; };
+
+// Whether the light shines on the side of a surface that the viewer sees: above its horizon, in a spot's cone, before a
+// rectangle's front. Other view samples are in shadow without a test.
+bool may_be_lit(vec3 point, vec3 normal, vec4 light, vec4 emission) {
+  const vec3 to_light = light.xyz - light.w * point;
+  return dot(normal, to_light) > 0.0 &&
+         (emission.w <= -1.0 || dot(emission.xyz, -to_light) >= emission.w * length(to_light));
+}
+
+bool at_infinity(const FrameRef frame) { return frame.f.light.w < 0.5; }
+
+// (u, v, depth) of q in a face.
+vec3 project(const Face face, bool parallel, vec3 q) {
+  const float depth = dot(face.forward.xyz, q);
+  return vec3(vec2(dot(face.right.xyz, q), dot(face.down.xyz, q)) / (parallel ? 1.0 : depth), depth);
+}
+
+// The face of a cube about the light that q is seen through: 2 axis + (negative side ? 1 : 0).
+uint cube_face(vec3 q) {
+  const vec3 a = abs(q);
+  const uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
+  return 2u * axis + (q[axis] < 0.0 ? 1u : 0u);
+}

@@ -1,0 +1,36 @@
+// item_rows invocations per item: one per row, or, for an item of one row, side by side along that row.
+//
+// lavapipe silently ends loops after 65,535 turns of an invocation: a dispatch does at most TURNS view samples of each
+// range, from push.first on, and says how long the longest range is; the host dispatches until all are done.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "techniques/alias_free_shadow_map/shaders/cast.glsl"
+layout(constant_id = 1) const uint TURNS = 32768;
+
+void main() {
+  const uint invocation = linear_group() * group_lanes + gl_LocalInvocationIndex;
+  const uint index = invocation / item_rows, lane = invocation % item_rows;
+  if (index >= push.count) return;
+  const uvec2 item = push.items.at[index];
+  const uint rows = item.y & 255u;
+  const bool single = rows == 1u;
+  if (!single && lane >= rows) return;
+  const Caster caster = load_caster(item.x, push.frame);
+  const Face face = push.frame.f.faces[push.face];
+  const Footprint f = footprint(caster, face, push.frame);
+  const uvec2 range = row_range(f, face, int((item.y >> 8u) + (single ? 0u : lane)), push.frame.f.grid_size);
+  const uint step = single ? item_rows : 1u;
+  const uint length = (range.y - range.x + step - 1u) / step;
+  if (push.first == 0u && length > TURNS) atomicMax(push.progress.p.longest, length);
+  const uint begin = range.x + push.first * step + (single ? lane : 0u);
+  uint turns = length > push.first ? min(length - push.first, TURNS) : 0u;
+  uint pairs = 0u;
+  for (uint i = 0u; i < turns; ++i) {
+    const uint slot = begin + i * step;
+    if (slot < range.y) {
+      test(item.x, caster, slot);
+      pairs++;
+    }
+  }
+  count_pairs(pairs);
+}

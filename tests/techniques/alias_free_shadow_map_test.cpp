@@ -1,0 +1,154 @@
+// alias_free_shadow_map against Embree's hard shadow at the same origin, and against itself: the lists' resolution and
+// window must not change a bit.
+#include <cstdlib>
+
+#include "tests/techniques/alias_free_scenes.h"
+
+namespace penumbra::test {
+namespace {
+
+// An open ground, a closed box and a soup of open triangles.
+Frame mixed_frame(const Light& light) {
+  Frame f;
+  testing::add_ground(f.geometry, 3);
+  testing::add_box(f.geometry, {-1.4f, 0.2f, -0.6f}, {-0.5f, 1.1f, 0.5f});
+  testing::add_soup(f.geometry, {0.1f, 0.1f, -0.7f}, {1.5f, 1.2f, 0.7f}, 300, 0.25f, 5);
+  Geometry& g = f.geometry;
+  g.triangle_instance.assign(g.triangle_count(), 0);
+  for (std::size_t t = 2; t < 14; ++t) g.triangle_instance[t] = 1;
+  g.instance_closed = {0, 1};
+  g.instance_albedo.assign(2, {0.7f, 0.7f, 0.7f});
+  f.light = light;
+  f.camera.eye = {0.4f, 2.6f, 4.2f}, f.camera.target = {0, 0.3f, 0};
+  return f;
+}
+
+Light lamp(Vec3f at) {
+  Light l;
+  l.kind = LightKind::point, l.center = at;
+  return l;
+}
+class AliasFreeScene : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
+
+TEST_P(AliasFreeScene, EqualsEmbreeButForTies) {
+  const auto [scene, size] = GetParam();
+  Stage stage(scene_frame(scene, "lamp"), size, size);
+  stage.expect_exact(stage.render());
+}
+
+INSTANTIATE_TEST_SUITE_P(Papers, AliasFreeScene,
+                         ::testing::Combine(::testing::Values("bunny", "torus_knot", "columns", "bird_nest"),
+                                            ::testing::Values(512, 1024)));
+
+TEST(AliasFreeShadowMap, EqualsEmbreeForEveryKindOfLight) {
+  for (const char* light : {"spot", "key", "ball"}) {
+    SCOPED_TRACE(light);
+    Stage stage(scene_frame("torus_knot", light), 384, 256);
+    stage.expect_exact(stage.render());
+  }
+}
+
+TEST(AliasFreeShadowMap, EqualsEmbreeOnOpenAndClosedMeshesAtEitherOrigin) {
+  for (const Light& light : {lamp({1.2f, 4, 1.5f}), lamp({-3, 3, 0.5f})}) {
+    Stage stage(mixed_frame(light), 320, 240);
+    for (const char* casters : {"back", "both"}) {
+      stage.expect_exact(stage.render({{"casters", casters}}));
+      stage.expect_exact(stage.render({{"casters", casters}, {"origin", "offset"}}), ReferenceOrigin::offset);
+    }
+  }
+}
+
+// grid_size 1 tests every view sample against every triangle: no triangle may miss a list that it touches.
+TEST(AliasFreeShadowMap, ListsChangeNoBit) {
+  for (const Light& light : {lamp({1.2f, 4, 1.5f}), lamp({0.05f, 0.7f, 1.1f})}) {
+    Stage stage(mixed_frame(light), 112, 84);
+    const std::vector<float> all = stage.render({{"grid_size", int64_t{1}}}).visibility;
+    for (const int64_t grid : {2, 33, 256, 1500})
+      for (const bool fit : {true, false})
+        EXPECT_EQ(stage.render({{"grid_size", grid}, {"fit", fit}}).visibility, all) << grid << (fit ? " fit" : "");
+  }
+}
+
+// More than 65,535 view samples, which some drivers' loops silently end at, in each row of lists, and in one list.
+TEST(AliasFreeShadowMap, ListsOfAMillionViewSamplesAreTestedWhole) {
+  Frame f;
+  testing::add_ground(f.geometry, 3);
+  testing::add_box(f.geometry, {-1, 0.2f, -0.6f}, {1, 1.1f, 0.5f});
+  f.light = lamp({1.2f, 4, 1.5f});
+  f.camera.eye = {0, 4, 0.1f}, f.camera.target = {0, 0, 0};
+  f.camera.vertical_fov_degrees = 60;
+  Stage stage(std::move(f), 1400, 1400);
+  const Rendered fine = stage.render();
+  for (const int64_t grid : {1, 20}) {
+    const Rendered coarse = stage.render({{"grid_size", grid}});
+    EXPECT_EQ(coarse.visibility, fine.visibility);
+    EXPECT_GT(number(coarse.counters, "list_length_max"), 1e6 / double(grid * grid));
+  }
+  stage.expect_exact(fine);
+}
+
+TEST(AliasFreeShadowMap, LightAmongTheViewSamplesTakesSixFaces) {
+  Stage stage(mixed_frame(lamp({-0.2f, 0.5f, 0.3f})), 320, 240);
+  const Rendered r = stage.render();
+  EXPECT_EQ(number(r.counters, "faces"), 6);
+  stage.expect_exact(r);
+  EXPECT_EQ(number(Stage(mixed_frame(lamp({0, 9, 0})), 32, 24).render().counters, "faces"), 1);
+}
+
+// Inside a closed mesh, light comes in through triangles that face it: found out by the view samples on its inside.
+TEST(AliasFreeShadowMap, CameraInsideAClosedMeshIsRight) {
+  for (const Vec3f at : {Vec3f{0.3f, 5, 0.2f}, Vec3f{0.3f, 1.5f, 0.2f}}) {  // light without and within
+    Frame f;
+    testing::add_box(f.geometry, {-2, -2, -2}, {2, 2, 2});
+    testing::add_box(f.geometry, {-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f});
+    f.geometry.triangle_instance.assign(24, 0);
+    f.geometry.instance_closed = {1}, f.geometry.closed = true;
+    f.light = lamp(at);
+    f.camera.eye = {1.5f, 1.2f, 1.7f}, f.camera.target = {0, 0, 0};
+    Stage stage(std::move(f), 160, 120);
+    stage.expect_exact(stage.render());
+    stage.expect_exact(stage.render({{"casters", "both"}}));
+  }
+}
+
+TEST(AliasFreeShadowMap, CountsAreThoseOfTheLists) {
+  Stage stage(mixed_frame(lamp({1.2f, 4, 1.5f})), 160, 120);
+  double facing = 0;
+  const ViewSamplesHost& view = stage.view.host();
+  for (std::size_t i = 0; i < stage.pixels(); ++i)
+    facing += view.triangle[i] != no_triangle &&
+              dot(view.geometric_normal[i].xyz(), stage.frame.light.center - view.position[i].xyz()) > 0;
+  for (const int64_t grid : {1, 64}) {
+    const Counters c = stage.render({{"grid_size", grid}}).counters;
+    EXPECT_EQ(number(c, "view_samples_listed"), facing);
+    EXPECT_NEAR(number(c, "list_length_mean") * number(c, "lists_occupied"), facing, 1e-6 * facing);
+    EXPECT_DOUBLE_EQ(number(c, "occupancy") * double(grid * grid), number(c, "lists_occupied"));
+    EXPECT_GE(number(c, "list_length_max"), number(c, "list_length_mean"));
+    // Coordinates, place and bit of each pixel; length and offset of each list.
+    EXPECT_NEAR(number(c, "list_bytes"), double(stage.pixels()) * 20.125 + double(grid * grid + 1) * 8, 64);
+    EXPECT_GT(number(c, "pairs_tested"), facing);
+  }
+}
+
+TEST(AliasFreeShadowMap, SecondFrameAllocatesNothingAndIsTheSame) {
+  Stage stage(mixed_frame(lamp({1.2f, 4, 1.5f})), 160, 120);
+  const std::unique_ptr<Technique> technique = stage.make({});
+  const Rendered first = stage.render(*technique);
+  const uint64_t bytes = device().allocated_bytes();
+  const Rendered second = stage.render(*technique);
+  EXPECT_EQ(device().allocated_bytes(), bytes);
+  EXPECT_EQ(first.visibility, second.visibility);
+  EXPECT_GE(technique->structure_bytes(), uint64_t(number(first.counters, "list_bytes")));
+}
+
+TEST(AliasFreeShadowMap, SkyAloneAndSurfacesThatFaceAwayRender) {
+  Frame sky = mixed_frame(lamp({1.2f, 4, 1.5f}));
+  sky.camera.eye = {0, 10, 0}, sky.camera.target = {0, 20, 0.1f};
+  Stage above(std::move(sky), 64, 48);
+  EXPECT_EQ(number(above.render().counters, "view_samples_listed"), 0);
+  Stage below(mixed_frame(lamp({0, -3, 0})), 64, 48);
+  for (const float v : below.render({{"casters", "both"}}).visibility) EXPECT_TRUE(v == 0 || v == 1);
+}
+
+}  // namespace
+}  // namespace penumbra::test
