@@ -11,16 +11,18 @@ void SampleGroups::setup(gpu::Device& device, uint32_t lanes) {
   if (tile_height_ * tile_height_ > 8 * lanes) tile_height_ /= 2;
   tile_width_ = 8 * lanes / tile_height_;
   const gpu::Specialization constants[] = {{0, lanes}, {1, tile_width_}, {2, tile_height_}};
-  pipeline_ = gpu::ComputePipeline(device, sample_groups_spv, sizeof(SampleGroupsConstants), constants);
+  pipeline_ = gpu::ComputePipeline(device, sample_groups_spv, sizeof(SampleGroupsConstants), constants,
+                                   std::vector<gpu::ImageUse>(3, gpu::ImageUse::sampled_nearest));
+}
+
+void SampleGroups::bind(VkImageView light, VkImageView origin, VkImageView normal) {
+  pipeline_.bind_images(std::vector<VkImageView>{light, origin, normal});
 }
 
 uint32_t SampleGroups::capacity(uint32_t width, uint32_t height) const { return tiles(width, height) * 8; }
 
 void SampleGroups::record(gpu::Commands& commands, const Input& in) const {
   SampleGroupsConstants pc{};
-  pc.light = in.light;
-  pc.origin = in.origin;
-  pc.normal = in.normal;
   pc.slots = in.slots;
   pc.group_count = in.group_count;
   pc.width = in.width;

@@ -9,6 +9,7 @@
 #include "shaders/gears_fit_grid.h"
 #include "shaders/gears_walk_cells_any.h"
 #include "shaders/gears_walk_cells_grid.h"
+#include "techniques/gears/cell_statistics.h"
 
 namespace penumbra::gears {
 namespace {
@@ -40,7 +41,7 @@ void Cells::setup(FrameState& state) {
     bin_small_[stage] = gpu::ComputePipeline(device, gears_bin_triangles_spv, sizeof(BinTrianglesConstants), wide);
     bin_large_[stage] = gpu::ComputePipeline(device, gears_bin_triangles_spv, sizeof(BinTrianglesConstants), large);
   }
-  walker_.setup(state, gears_walk_cells_grid_spv, gears_walk_cells_any_spv, sizeof(WalkCellsConstants));
+  walker_.setup(state, gears_walk_cells_grid_spv, gears_walk_cells_any_spv, sizeof(WalkCellsConstants), 0);
 }
 
 void Cells::build(FrameState& state, const Geometry& geometry, gpu::PassRecorder& passes) {
@@ -49,6 +50,8 @@ void Cells::build(FrameState& state, const Geometry& geometry, gpu::PassRecorder
   state.set_order(all, static_cast<uint32_t>(all.size()), passes);
   passes.finish();
 }
+
+void Cells::bind(const FrameState& state) { walker_.bind(state, {}); }
 
 void Cells::allocate(FrameState& state) {
   gpu::Device& device = *state.device;
@@ -195,10 +198,10 @@ void Cells::plan_chunks(FrameState& state, gpu::PassRecorder& passes) {
 void Cells::walk_chunks(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes,
                         Walker::Statistics statistics) {
   WalkCellsConstants pc{};
-  pc.frame = state.frame.address();
+  pc.light_samples = state.light_samples.address();
+  pc.visibility = in.device.visibility->address();
   pc.slots = state.slots.address();
   pc.masks = state.masks_address(in);
-  pc.triangles = state.triangles.address();
   pc.list = state.list.address();
   pc.group_cells = group_cells_.address();
   pc.counts = triangle_counts_.address();
@@ -238,6 +241,33 @@ void Cells::render(FrameState& state, const RenderInput& in, gpu::PassRecorder& 
   gpu::ensure(assigned_, *state.device, std::max<uint64_t>(std::min(assignments_, budget(state)), 1) * 4,
               gpu::Memory::device, "the cells' lists of triangles");
   walk_chunks(state, in, passes, Walker::Statistics::none);
+}
+
+void Cells::count(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Counters& counters) {
+  const uint32_t walks = walks_;
+  const auto recount = [&](Walker::Statistics statistics) {
+    state.begin(in, passes);
+    bin_samples(state, in, passes);
+    count_triangles(state, in, passes);
+    plan_chunks(state, passes);
+    walk_chunks(state, in, passes, statistics);
+    return state.read_header(passes);
+  };
+  const Header walked = recount(Walker::Statistics::as_walked), all = recount(Walker::Statistics::nothing_skipped);
+  CellCounts counts;
+  counts.samples.resize(cell_count());
+  counts.triangles.resize(cell_count());
+  gpu::download(passes, "read_counts", sample_counts_, counts.samples.data(), counts.samples.size() * 4);
+  gpu::download(passes, "read_counts", triangle_counts_, counts.triangles.data(), counts.triangles.size() * 4);
+  passes.finish();
+  add_cell_counters(counts, counters);
+  add_area_counters(in.scene_case->frame->geometry, state.constants, all, counters);
+  counters["pairs_rasterised"] = wide(walked.pairs);
+  counters["necessary_assignments"] = wide(all.necessary);
+  counters["assignments_to_cells"] = static_cast<double>(assignments_);
+  counters["triangles_outside_grid"] = static_cast<double>(list_count_);
+  counters["chunks"] = static_cast<double>(chunks_.size());
+  counters["walk_dispatches"] = static_cast<double>(walks);
 }
 
 uint64_t Cells::bytes() const {

@@ -11,6 +11,8 @@ class Cells {
  public:
   void setup(FrameState& state);
   void build(FrameState& state, const Geometry& geometry, gpu::PassRecorder& passes);
+  // After build() or setup(): the arrays that the kernels fetch from.
+  void bind(const FrameState& state);
   void render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   void count(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Counters& counters);
   uint64_t bytes() const;

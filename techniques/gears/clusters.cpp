@@ -1,5 +1,7 @@
 #include "techniques/gears/clusters.h"
 
+#include <algorithm>
+
 #include "shaders/gears_refit.h"
 #include "shaders/gears_walk_tree_any.h"
 #include "shaders/gears_walk_tree_grid.h"
@@ -12,7 +14,7 @@ void Clusters::setup(FrameState& state) {
   prepare_ = prepare_pipeline(state);
   const gpu::Specialization constants[] = {{0, state.lanes}, {1, wide_lanes}};
   refit_ = gpu::ComputePipeline(device, gears_refit_spv, sizeof(RefitConstants), constants);
-  walker_.setup(state, gears_walk_tree_grid_spv, gears_walk_tree_any_spv, sizeof(WalkTreeConstants));
+  walker_.setup(state, gears_walk_tree_grid_spv, gears_walk_tree_any_spv, sizeof(WalkTreeConstants), 1);
 }
 
 void Clusters::build(FrameState& state, const Geometry& geometry, gpu::PassRecorder& passes) {
@@ -21,9 +23,16 @@ void Clusters::build(FrameState& state, const Geometry& geometry, gpu::PassRecor
   passes.finish();
   gpu::ensure(boxes_, *state.device, std::size_t{order_.node_count} * 2 * sizeof(Vec4f), gpu::Memory::device,
               "the box tree");
+  box_texels_.ensure(*state.device, passes, std::size_t{order_.node_count} * 2, "the box tree");
   state.set_order(order_.slots, order_.tree_slots, passes);
   passes.finish();
   order_.slots = {};
+}
+
+void Clusters::bind(const FrameState& state) {
+  const VkImageView boxes[] = {box_texels_.view()};
+  walker_.bind(state, boxes);
+  groups_.bind(state.frame_texels.view(), state.origin_texels.view(), state.normal_texels.view());
 }
 
 void Clusters::prepare(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
@@ -43,19 +52,17 @@ void Clusters::prepare(FrameState& state, const RenderInput& in, gpu::PassRecord
       commands.barrier();
       past = first;
     }
+    box_texels_.copy_from(commands, boxes_, std::size_t{order_.node_count} * 2);
   });
 }
 
-void Clusters::group(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
+void Clusters::group(FrameState& state, gpu::PassRecorder& passes) {
   const uint32_t capacity = groups_.capacity(state.width, state.height);
   gpu::ensure(state.slots, *state.device, std::size_t{capacity} * state.lanes * 4, gpu::Memory::device,
               "groups of view samples");
   gpu::ensure(state.resume, *state.device, std::size_t{capacity} * 3 * 4, gpu::Memory::device,
               "groups to go on with");
   SampleGroups::Input input;
-  input.light = state.frame.address();
-  input.origin = in.view_samples->origin().address();
-  input.normal = in.view_samples->geometric_normal().address();
   input.slots = state.slots.address();
   input.group_count = state.header.address();
   input.width = state.width;
@@ -67,11 +74,10 @@ void Clusters::group(FrameState& state, const RenderInput& in, gpu::PassRecorder
 
 void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Walker::Statistics statistics) {
   WalkTreeConstants pc{};
-  pc.frame = state.frame.address();
+  pc.light_samples = state.light_samples.address();
+  pc.visibility = in.device.visibility->address();
   pc.slots = state.slots.address();
   pc.masks = state.masks_address(in);
-  pc.triangles = state.triangles.address();
-  pc.boxes = boxes_.address();
   pc.list = state.list.address();
   pc.resume = state.resume.address();
   pc.header = state.header.address();
@@ -93,11 +99,36 @@ void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder&
 void Clusters::render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
   state.begin(in, passes);
   prepare(state, in, passes);
-  group(state, in, passes);
+  group(state, passes);
   const Header h = state.read_header(passes);
   group_count_ = h.group_count;
   list_count_ = h.list_count;
   walk(state, in, passes, Walker::Statistics::none);
+}
+
+void Clusters::count(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Counters& counters) {
+  const uint32_t walks = walks_;
+  const auto run = [&](Walker::Statistics statistics) {
+    state.begin(in, passes);
+    prepare(state, in, passes);
+    group(state, passes);
+    state.read_header(passes);
+    walk(state, in, passes, statistics);
+    return state.read_header(passes);
+  };
+  const Header walked = run(Walker::Statistics::as_walked), all = run(Walker::Statistics::nothing_skipped);
+  const double groups = std::max(1u, group_count_);
+  counters["groups"] = static_cast<double>(group_count_);
+  counters["nodes_per_group"] = wide(walked.nodes) / groups;
+  counters["leaves_per_group"] = wide(walked.leaves) / groups;
+  counters["pairs_rasterised"] = wide(walked.pairs);
+  counters["total_assignments"] = wide(all.pairs);
+  counters["necessary_assignments"] = wide(all.necessary);
+  counters["tree_leaves"] = static_cast<double>(order_.leaf_count);
+  counters["tree_nodes"] = static_cast<double>(order_.node_count);
+  counters["tree_bytes"] = static_cast<double>(boxes_.bytes());
+  counters["triangles_outside_tree"] = static_cast<double>(list_count_);
+  counters["walk_dispatches"] = static_cast<double>(walks);
 }
 
 }  // namespace penumbra::gears

@@ -30,6 +30,9 @@ void FrameState::set_light(const Case& c, gpu::PassRecorder& passes) {
   gpu::ensure(frame, *device, sizeof(FrameConstants), gpu::Memory::device, "the frame's constants");
   gpu::ensure(header, *device, sizeof(Header), gpu::Memory::device, "counts");
   gpu::ensure(header_host, *device, sizeof(Header), gpu::Memory::read_back, "counts");
+  frame_texels.ensure(*device, passes, sizeof(FrameConstants) / sizeof(Vec4f), "the frame's constants");
+  for (TexelArray* t : {&origin_texels, &position_texels, &normal_texels})
+    t->ensure(*device, passes, pixels(), "view samples for fetching");
   if (!layout.packed)
     gpu::ensure(walked, *device, std::size_t{pixels()} * static_cast<std::size_t>(layout.words) * 4,
                 gpu::Memory::device, "the masks as walked");
@@ -43,6 +46,7 @@ void FrameState::set_order(const std::vector<uint32_t>& slots_to_triangles, uint
   gpu::ensure(list, *device, bytes, gpu::Memory::device, "the list of triangles outside the tree");
   gpu::ensure(triangles, *device, slots_to_triangles.size() * 3 * sizeof(Vec4f), gpu::Memory::device,
               "triangles in working space");
+  triangle_texels.ensure(*device, passes, slots_to_triangles.size() * 3, "triangles in working space");
   gpu::upload(passes, "upload_order", order, slots_to_triangles.data(), bytes);
 }
 
@@ -59,7 +63,14 @@ void FrameState::begin(const RenderInput& in, gpu::PassRecorder& passes) {
     commands.update(frame, &constants, sizeof constants);
     commands.fill(header, 0);
     const gpu::Buffer& masks = layout.packed ? *in.device.mask : walked;
+    // Pixels that no light sample reaches belong to no group: all is blocked.
     commands.fill(masks, 0xffffffffu, 0, uint64_t{pixels()} * static_cast<uint64_t>(layout.words) * 4);
+    if (walk_resolves()) commands.fill(*in.device.visibility, 0, 0, uint64_t{pixels()} * 4);
+    commands.barrier();
+    frame_texels.copy_from(commands, frame, sizeof(FrameConstants) / sizeof(Vec4f));
+    origin_texels.copy_from(commands, in.view_samples->origin(), pixels());
+    position_texels.copy_from(commands, in.view_samples->position(), pixels());
+    normal_texels.copy_from(commands, in.view_samples->geometric_normal(), pixels());
   });
 }
 
@@ -85,6 +96,8 @@ void FrameState::prepare(gpu::Commands& commands, const gpu::ComputePipeline& pi
   pc.first_leaf = first_leaf;
   pc.leaf_groups = leaf_groups;
   commands.dispatch(pipeline, pc, groups_for(slot_count, lanes));
+  commands.barrier();
+  triangle_texels.copy_from(commands, triangles, std::size_t{slot_count} * 3);
 }
 
 Header FrameState::read_header(gpu::PassRecorder& passes) {
@@ -97,6 +110,8 @@ Header FrameState::read_header(gpu::PassRecorder& passes) {
 
 uint64_t FrameState::bytes() const {
   uint64_t sum = 0;
+  for (const TexelArray* t : {&frame_texels, &origin_texels, &position_texels, &normal_texels, &triangle_texels})
+    sum += t->bytes();
   for (const gpu::Buffer* b : {&frame, &header, &header_host, &light_samples, &weights, &order, &triangles, &list, &slots,
                                &resume, &walked})
     sum += b->bytes();
@@ -117,6 +132,7 @@ void Resolve::setup(const FrameState& state) {
 }
 
 void Resolve::run(const FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
+  if (state.walk_resolves()) return;
   ResolveConstants pc{};
   pc.walked = state.masks_address(in);
   pc.masks = in.device.mask->address();

@@ -4,6 +4,7 @@
 #include "gpu/pass_recorder.h"
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
+#include "techniques/common/texel_array.h"
 #include "techniques/gears/light_setup.h"
 #include "techniques/gears/params.h"
 #include "techniques/gears/shaders/constants.h"
@@ -27,6 +28,8 @@ struct FrameState {
   gpu::Buffer frame, header, header_host;
   gpu::Buffer light_samples, weights; // world; uploaded when the light changes
   gpu::Buffer order, triangles, list; // slots to triangles; 3 vec4 per slot; slots for the list
+  // For fetching: the frame's constants, P', P and Ng per pixel, the triangles again.
+  TexelArray frame_texels, origin_texels, position_texels, normal_texels, triangle_texels;
   gpu::Buffer slots, resume;          // view samples of groups; groups to go on with
   gpu::Buffer walked;                 // masks as walked, where not packed
   uint32_t tree_slots = 0, slot_count = 0;
@@ -42,9 +45,14 @@ struct FrameState {
                const gpu::Buffer& boxes, uint32_t first_leaf, uint32_t leaf_groups);
   // Waits for the device; what it counted so far.
   Header read_header(gpu::PassRecorder& passes);
+  // A walk writes visibility itself: masks have their final layout, and all light samples one weight.
+  bool walk_resolves() const { return layout.packed && !layout.weighted && layout.samples % 32 == 0; }
   uint64_t masks_address(const RenderInput& in) const;
   uint64_t bytes() const;
 };
+
+// A count of two words.
+inline double wide(const uint32_t (&words)[2]) { return words[0] + 4294967296.0 * words[1]; }
 
 gpu::ComputePipeline prepare_pipeline(const FrameState& state);
 

@@ -45,11 +45,25 @@ class Gears final : public Technique {
       clusters() ? clusters_.build(state_, c.frame->geometry, passes) : cells_.build(state_, c.frame->geometry, passes);
     built_ = true;
     passes.finish();
+    clusters() ? clusters_.bind(state_) : cells_.bind(state_);
   }
 
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {
     clusters() ? clusters_.render(state_, in, passes) : cells_.render(state_, in, passes);
     resolve_.run(state_, in, passes);
+    last_ = in;
+    passes_ = &passes;
+  }
+
+  // Renders the last frame again, with statistics, into the same output.
+  Counters counters() override {
+    Counters c;
+    if (!passes_) return c;
+    clusters() ? clusters_.count(state_, last_, *passes_, c) : cells_.count(state_, last_, *passes_, c);
+    resolve_.run(state_, last_, *passes_);
+    passes_->finish();
+    c["structure_bytes"] = static_cast<double>(structure_bytes());
+    return c;
   }
 
   uint64_t structure_bytes() const override { return state_.bytes() + clusters_.bytes() + cells_.bytes(); }
@@ -61,6 +75,8 @@ class Gears final : public Technique {
   FrameState state_;
   std::optional<MaskLayout> ready_;   // what the pipelines are made for
   bool built_ = false;
+  RenderInput last_;
+  gpu::PassRecorder* passes_ = nullptr;
   Resolve resolve_;
   Clusters clusters_;
   Cells cells_;

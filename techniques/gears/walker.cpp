@@ -26,12 +26,21 @@ uint32_t Walker::leaf_batch(const FrameState& state) const {
   return std::clamp(static_cast<uint32_t>(state.params.leaf_batch), 1u, most);
 }
 
-void Walker::setup(const FrameState& state, gpu::Spirv grid, gpu::Spirv any, uint32_t push_bytes) {
+void Walker::setup(const FrameState& state, gpu::Spirv grid, gpu::Spirv any, uint32_t push_bytes,
+                   uint32_t more_arrays) {
   grid_ = grid;
   any_ = any;
   push_bytes_ = push_bytes;
+  arrays_ = 5 + more_arrays;
   pipelines_.clear();
   pipeline(state, {true, true, true, false, Statistics::none});
+}
+
+void Walker::bind(const FrameState& state, std::span<const VkImageView> more) {
+  views_ = {state.frame_texels.view(), state.origin_texels.view(), state.position_texels.view(),
+            state.normal_texels.view(), state.triangle_texels.view()};
+  views_.insert(views_.end(), more.begin(), more.end());
+  for (auto& [variant, p] : pipelines_) p.bind_images(views_);
 }
 
 const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Variant& v) {
@@ -47,13 +56,16 @@ const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Vari
                                                 {9, static_cast<uint32_t>(v.statistics)},
                                                 {10, v.begin},
                                                 {11, v.list},
-                                                {12, v.walk}};
+                                                {12, v.walk},
+                                                {13, state.walk_resolves() ? u(m.samples) : 0}};
   if (m.grid) {
     constants.insert(constants.end(), {{1, u(m.columns)}, {2, u(m.rows)}, {3, u(m.pitch)}});
   } else {
     constants.insert(constants.end(), {{1, u(m.samples)}, {5, m.infinite}});
   }
-  p = gpu::ComputePipeline(*state.device, m.grid ? grid_ : any_, push_bytes_, constants);
+  p = gpu::ComputePipeline(*state.device, m.grid ? grid_ : any_, push_bytes_, constants,
+                           std::vector<gpu::ImageUse>(arrays_, gpu::ImageUse::sampled_nearest));
+  if (!views_.empty()) p.bind_images(views_);
   return p;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <vector>
 
 #include "techniques/gears/frame_state.h"
 
@@ -21,8 +22,13 @@ class Walker {
   };
   using Dispatch = std::function<void(gpu::Commands&, const gpu::ComputePipeline&, const Turn&)>;
 
-  // `code` for regular grids and for any samples. Makes the kernels that a usual frame needs.
-  void setup(const FrameState& state, gpu::Spirv grid, gpu::Spirv any, uint32_t push_bytes);
+  // Code for regular grids and for any samples; `more_arrays`: how many texel arrays it fetches from beside the state's. Makes the kernel that
+  // every frame needs.
+  void setup(const FrameState& state, gpu::Spirv grid, gpu::Spirv any, uint32_t push_bytes,
+             uint32_t more_arrays);
+  // Arrays that the kernel fetches from: the state's and then `more`. Again whenever they were made anew; not while
+  // commands are in flight.
+  void bind(const FrameState& state, std::span<const VkImageView> more);
   // Runs passes called `name`. `begin`: masks are begun and the list done, else only the walk. Returns the number of
   // dispatches of the walk itself (1 when no group had to go on).
   uint32_t run(FrameState& state, gpu::PassRecorder& passes, const char* name, uint32_t groups, uint32_t list_count,
@@ -40,6 +46,8 @@ class Walker {
 
   gpu::Spirv grid_, any_;
   uint32_t push_bytes_ = 0;
+  uint32_t arrays_ = 0;
+  std::vector<VkImageView> views_;
   std::map<Variant, gpu::ComputePipeline> pipelines_;
 };
 

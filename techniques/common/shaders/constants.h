@@ -12,8 +12,6 @@ namespace penumbra {
 #endif
 
 struct SampleGroupsConstants {
-  PENUMBRA_ADDRESS(LightBasisRef) light;
-  PENUMBRA_ADDRESS(Vec4s) origin, normal;  // per pixel: P' (w = 0: no view sample), Ng
   PENUMBRA_ADDRESS(Uints) slots;  // out: pixel of each slot, SG slots per group
   PENUMBRA_ADDRESS(Uints) group_count;  // out: one counter, 0 before
   PENUMBRA_UINT width, height, tiles_x, tiles;

@@ -1,5 +1,21 @@
+#extension GL_EXT_control_flow_attributes : require
 #include "techniques/common/shaders/light_basis.h"
+#include "techniques/common/shaders/texels.glsl"
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer LightBasisRef { LightBasis b; };
+
+// A LightBasis that is the beginning of a TexelArray.
+LightBasis light_basis(sampler2D array) {
+  LightBasis b;
+  b.row_x = texel(array, 0u);
+  b.row_y = texel(array, 1u);
+  b.row_z = texel(array, 2u);
+  b.origin = texel(array, 3u);
+  [[unroll]] for (uint c = 0u; c < 8u; c++) b.corners[c] = texel(array, 4u + c);
+  uvec4 last = floatBitsToUint(texel(array, 12u));
+  b.corner_count = last.x;
+  b.front_only = last.y;
+  return b;
+}
 
 // Always the same expression, so that equal points stay equal.
 vec3 to_working(LightBasis b, vec3 world) {

@@ -6,7 +6,6 @@
 #define PENUMBRA_COMPUTE
 #include "gpu/shaders/common.glsl"
 #include "techniques/common/shaders/buffers.glsl"
-layout(buffer_reference, std430, buffer_reference_align = 4) buffer LightBasisRef { uint unused; };
 #include "techniques/common/shaders/constants.h"
 layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint SG = 8;

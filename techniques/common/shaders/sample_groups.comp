@@ -18,6 +18,9 @@ layout(constant_id = 1) const uint TILE_WIDTH = 8;     // TILE_WIDTH * tile heig
 layout(constant_id = 2) const uint TILE_HEIGHT = 8;
 #include "techniques/common/shaders/subgroup.glsl"
 
+layout(set = 0, binding = 0) uniform sampler2D light_texels;    // a LightBasis
+layout(set = 0, binding = 1) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample)
+layout(set = 0, binding = 2) uniform sampler2D normal_texels;   // per pixel: Ng
 layout(push_constant) uniform Push { SampleGroupsConstants pc; };
 
 const uint no_sample = 0xffffffffu;
@@ -27,7 +30,7 @@ void main() {
   uint tile = linear_group();
   if (tile >= pc.tiles) return;
   uint lane = gl_SubgroupInvocationID;
-  LightBasis light = pc.light.b;
+  LightBasis light = light_basis(light_texels);
   uvec2 corner = uvec2(tile % pc.tiles_x, tile / pc.tiles_x) * uvec2(TILE_WIDTH, TILE_HEIGHT);
 
   vec3 at[8];
@@ -40,8 +43,8 @@ void main() {
     uvec2 xy = corner + uvec2(q % TILE_WIDTH, q / TILE_WIDTH);
     bool inside = xy.x < pc.width && xy.y < pc.height;
     pixel[k] = inside ? xy.y * pc.width + xy.x : 0u;
-    vec4 o = pc.origin.at[pixel[k]];
-    vec3 n = pc.normal.at[pixel[k]].xyz;
+    vec4 o = texel(origin_texels, pixel[k]);
+    vec3 n = texel(normal_texels, pixel[k]).xyz;
     vec3 w = to_working(light, o.xyz);
     bool active_ = inside && reachable(light, o, n, pc.slack);
     at[k] = vec3(w.xy, w.z * pc.depth_weight);

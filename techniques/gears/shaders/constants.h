@@ -28,10 +28,10 @@ struct RefitConstants {
 };
 
 struct WalkTreeConstants {
-  PENUMBRA_ADDRESS(FrameRef) frame;
+  PENUMBRA_ADDRESS(Vec4s) light_samples;  // world
+  PENUMBRA_ADDRESS(Floats) visibility;  // per pixel; written where SAMPLES_SEEN
   PENUMBRA_ADDRESS(Uints) slots;  // pixel of each slot, SG per group
   PENUMBRA_ADDRESS(Uints) masks;  // WORDS per pixel
-  PENUMBRA_ADDRESS(Vec4s) triangles, boxes;
   PENUMBRA_ADDRESS(Uints) list;  // slots outside the tree
   PENUMBRA_ADDRESS(Uints) resume;  // lists of groups to go on with: two of `groups`, then the next leaf of each group
   PENUMBRA_ADDRESS(HeaderRef) header;
@@ -41,9 +41,9 @@ struct WalkTreeConstants {
 };
 
 struct WalkCellsConstants {
-  PENUMBRA_ADDRESS(FrameRef) frame;
+  PENUMBRA_ADDRESS(Vec4s) light_samples;  // world
+  PENUMBRA_ADDRESS(Floats) visibility;  // per pixel; written where SAMPLES_SEEN
   PENUMBRA_ADDRESS(Uints) slots, masks;
-  PENUMBRA_ADDRESS(Vec4s) triangles;
   PENUMBRA_ADDRESS(Uints) list;  // triangles outside the cells
   PENUMBRA_ADDRESS(Uints) group_cells;  // cell of each group
   PENUMBRA_ADDRESS(Uints) counts, offsets;  // per cell: its triangles, and where its list would begin in one list of all cells

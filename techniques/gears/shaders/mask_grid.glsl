@@ -34,7 +34,7 @@ void block_horizon(vec3 P, vec3 n, FrameConstants f) {
   bool behind = dot(f.light.row_z.xyz, P - f.light.origin.xyz) <= 0.0;
   float h = dot(n, f.first.xyz - P), hx = dot(n, f.step_u.xyz), hy = dot(n, f.step_v.xyz);
   float inverse = -1.0 / (hx == 0.0 ? 1.0 : hx);
-  for (int q = 0; q < WORDS; q++) {
+  [[unroll]] for (int q = 0; q < WORDS; q++) {
     uint w = 0u;
     [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
       int row = PITCH > 32 ? q >> 1 : q * ROWS_PER_WORD + r;
@@ -53,13 +53,13 @@ void block_horizon(vec3 P, vec3 n, FrameConstants f) {
 
 void begin_mask() {
   open_rect = vec4(0.0, float(COLUMNS - 1), 0.0, float(ROWS - 1));
-  for (int q = 0; q < WORDS; q++) open_[q] = 0xffffffffu;
+  [[unroll]] for (int q = 0; q < WORDS; q++) open_[q] = 0xffffffffu;
 }
 
 void update_open() {
   uint columns = 0u, columns_high = 0u;
   float r0 = 1e3, r1 = -1.0;
-  for (int q = 0; q < WORDS; q++) {
+  [[unroll]] for (int q = 0; q < WORDS; q++) {
     uint u = or_of_all(~mask[q]);
     open_[q] = u;
     if (PITCH > 32) {
@@ -88,7 +88,7 @@ bool is_open(int i0, int i1, int j0, int j1) {
   if (PITCH <= 32) {
     uint row = below(i1 + 1) & ~below(i0), columns = row;
     [[unroll]] for (int r = 1; r < ROWS_PER_WORD; r++) columns |= row << (r * PITCH);
-    for (int q = 0; q < WORDS; q++) {
+    [[unroll]] for (int q = 0; q < WORDS; q++) {
       int from = clamp((j0 - q * ROWS_PER_WORD) * PITCH, 0, 32), to = clamp((j1 + 1 - q * ROWS_PER_WORD) * PITCH, 0, 32);
       uint rows = (to >= 32 ? 0xffffffffu : (1u << to) - 1u) & ~(from >= 32 ? 0xffffffffu : (1u << from) - 1u);
       found |= open_[q] & rows & columns;
@@ -121,6 +121,18 @@ bool touches(vec3 lo, vec3 hi, out uint rect) {
   int c = int(clamp(j0, 0.0, float(ROWS - 1))), d = int(clamp(j1, 0.0, float(ROWS - 1)));
   rect = uint(a) | uint(b) << 8 | uint(c) << 16 | uint(d) << 24;
   return above && i0 <= i1 && j0 <= j1 && is_open(a, b, c, d);
+}
+
+// False when the triangle's plane has the light and all view samples of the group on one side, so that it can hide
+// nothing: a quick end for the ground's large triangles, which reach through the light's plane.
+bool separates(vec3 a, vec3 b, vec3 c) {
+  vec3 n = edge_normal(b - a, c - a);
+  vec3 lo = n * (group_lo - a - pad), hi = n * (group_hi - a + pad);
+  float below_ = dot(lower(lo, hi), vec3(1.0)), above = dot(upper(lo, hi), vec3(1.0));
+  vec3 l0 = n * (vec3(0.0) - a - pad), l1 = n * (vec3(float(COLUMNS - 1), float(ROWS - 1), 0.0) - a + pad);
+  float light_below = dot(lower(l0, l1), vec3(1.0)), light_above = dot(upper(l0, l1), vec3(1.0));
+  float error = 1e-5 * (abs(below_) + abs(above) + abs(light_below) + abs(light_above));
+  return !((below_ > error && light_below > error) || (above < -error && light_above < -error));
 }
 
 // A half-space's bound on the columns of row j: column >= or <= slope j + offset.

@@ -40,6 +40,7 @@ void block_horizon(vec3 P, vec3 n, FrameConstants f) {
   }
 }
 
+bool separates(vec3 a, vec3 b, vec3 c) { return true; }
 void begin_mask() {}
 void update_open() {}
 

@@ -12,9 +12,33 @@ layout(constant_id = 8) const uint TURN_LIMIT = 20000;
 layout(constant_id = 9) const uint COUNTING = 0;         // 1: statistics of this walk; 2: and no pair is skipped
 layout(constant_id = 10) const bool BEGIN = true;        // this dispatch begins the masks,
 layout(constant_id = 11) const bool LIST = true;         // does a part of the list,
+layout(constant_id = 13) const uint SAMPLES_SEEN = 0;    // not 0: visibility is written too, from so many light samples
 layout(constant_id = 12) const bool WALK = true;         // walks the tree or the cells
 #include "techniques/common/shaders/subgroup.glsl"
+#include "techniques/common/shaders/texels.glsl"
 #include "techniques/common/shaders/edge_half_spaces.glsl"
+
+layout(set = 0, binding = 0) uniform sampler2D frame_texels;    // FrameConstants
+layout(set = 0, binding = 1) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample),
+layout(set = 0, binding = 2) uniform sampler2D position_texels; // P,
+layout(set = 0, binding = 3) uniform sampler2D normal_texels;   // Ng
+layout(set = 0, binding = 4) uniform sampler2D triangles;       // 3 texels per slot, as prepare_triangles.comp writes them
+
+// What a walk needs of them.
+FrameConstants frame_constants() {
+  FrameConstants f;
+  f.light = light_basis(frame_texels);
+  f.light_lo = texel(frame_texels, 13u);
+  f.light_hi = texel(frame_texels, 14u);
+  f.first = texel(frame_texels, 15u);
+  f.step_u = texel(frame_texels, 16u);
+  f.step_v = texel(frame_texels, 17u);
+  f.cone = texel(frame_texels, 22u);
+  f.apex = texel(frame_texels, 23u);
+  f.front = texel(frame_texels, 24u);
+  f.pad = texel(frame_texels, 27u).x;
+  return f;
+}
 
 uint turns = 0u;
 vec3 sample_origin;
@@ -29,12 +53,12 @@ uint pairs = 0u, necessary = 0u, nodes = 0u, leaves = 0u;
 uint pixel;
 bool idle;
 
-void begin_group(uint g, FrameRef frame, Uints slots) {
+void begin_group(uint g, FrameConstants f, Uints slots, Vec4s samples) {
   pixel = slots.at[g * SG + gl_SubgroupInvocationID];
   idle = pixel == no_sample;
   pixel = idle ? subgroupShuffle(pixel, 0u) : pixel;   // the first slot of a group always holds one
-  p = to_working(frame.f.light, frame.f.origin.at[pixel].xyz);
-  pad = frame.f.pad;
+  p = to_working(f.light, texel(origin_texels, pixel).xyz);
+  pad = f.pad;
 #ifdef GRID
   p.z = upper(p.z, pad);
 #endif
@@ -42,34 +66,41 @@ void begin_group(uint g, FrameRef frame, Uints slots) {
   group_hi = highest(p);
   begin_mask();
 #ifndef GRID
-  sample_origin = frame.f.light.origin.xyz;
-  begin_light(frame.f, frame.f.light_samples);
+  sample_origin = f.light.origin.xyz;
+  begin_light(f, samples);
 #endif
 }
 
 void load_mask(Uints masks) {
-  for (int q = 0; q < WORDS; q++) mask[q] = masks.at[pixel * uint(WORDS) + uint(q)];
+  [[unroll]] for (int q = 0; q < WORDS; q++) mask[q] = masks.at[pixel * uint(WORDS) + uint(q)];
 }
 
 void store_mask(Uints masks) {
   if (!idle)
-    for (int q = 0; q < WORDS; q++) masks.at[pixel * uint(WORDS) + uint(q)] = mask[q];
+    [[unroll]] for (int q = 0; q < WORDS; q++) masks.at[pixel * uint(WORDS) + uint(q)] = mask[q];
+}
+
+void store_visibility(Floats visibility) {
+  if (SAMPLES_SEEN == 0u) return;
+  int blocked = 0;
+  [[unroll]] for (int q = 0; q < WORDS; q++) blocked += bitCount(mask[q]);
+  if (!idle) visibility.at[pixel] = float(int(SAMPLES_SEEN) - blocked) / float(SAMPLES_SEEN);
 }
 
 // Every view sample of the group sees no light sample any more.
 bool all_blocked() {
   uint w = 0xffffffffu;
-  for (int q = 0; q < WORDS; q++) w &= mask[q];
+  [[unroll]] for (int q = 0; q < WORDS; q++) w &= mask[q];
   return COUNTING != 2u && subgroupAll(w == 0xffffffffu);
 }
 
 // Lanes are triangles: the one in `slot` of each lane with `wanted`. Then all that touch the mask are rasterised, lanes
 // being view samples. `listed`: from the list, so possibly through the light's plane.
-void rasterise_slots(Vec4s triangles, uint slot, bool wanted, bool listed) {
-  vec4 a = triangles.at[slot * 3u];
-  vec3 b = triangles.at[slot * 3u + 1u].xyz, c = triangles.at[slot * 3u + 2u].xyz;
+void rasterise_slots(uint slot, bool wanted, bool listed) {
+  vec4 a = texel(triangles, slot * 3u);
+  vec3 b = texel(triangles, slot * 3u + 1u).xyz, c = texel(triangles, slot * 3u + 2u).xyz;
   uint rect;
-  bool hit = touches(lower(lower(a.xyz, b), c), upper(upper(a.xyz, b), c), rect) && wanted && (listed || a.w == 0.0);
+  bool hit = touches(lower(lower(a.xyz, b), c), upper(upper(a.xyz, b), c), rect) && wanted && (listed ? separates(a.xyz, b, c) : a.w == 0.0);
   uint left = subgroupBallot(hit).x;
   if (left == 0u) return;
   do {
@@ -87,12 +118,12 @@ void rasterise_slots(Vec4s triangles, uint slot, bool wanted, bool listed) {
   } while (left != 0u);
 }
 
-void do_list(Vec4s triangles, Uints list, uint begin, uint end) {
+void do_list(Uints list, uint begin, uint end) {
   uint i = begin;
   do {
     uint mine = i + gl_SubgroupInvocationID;
     bool wanted = mine < end;
-    rasterise_slots(triangles, wanted ? list.at[mine] : 0u, wanted, true);
+    rasterise_slots(wanted ? list.at[mine] : 0u, wanted, true);
     i += SG;
     turns++;
   } while (i < end);

@@ -14,7 +14,7 @@ uint walk(uint cell, uint done) {
     do {
       uint mine = done + gl_SubgroupInvocationID;
       bool wanted = mine < count;
-      rasterise_slots(pc.triangles, wanted ? pc.assigned.at[begin + mine] : 0u, wanted, false);
+      rasterise_slots(wanted ? pc.assigned.at[begin + mine] : 0u, wanted, false);
       done += SG;
       turns++;
       full = all_blocked();
@@ -28,12 +28,13 @@ void main() {
   uint n = linear_group();
   if (n >= pc.work_groups) return;
   uint g = RESUMED ? pc.resume.at[pc.read_list * pc.groups + n] : pc.first_group + n;
-  begin_group(g, pc.frame, pc.slots);
+  FrameConstants f = frame_constants();
+  begin_group(g, f, pc.slots, pc.light_samples);
   if (BEGIN)
-    block_horizon(pc.frame.f.position.at[pixel].xyz, pc.frame.f.normal.at[pixel].xyz, pc.frame.f);
+    block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
   else
     load_mask(pc.masks);
-  if (LIST) do_list(pc.triangles, pc.list, pc.list_begin, pc.list_end);
+  if (LIST) do_list(pc.list, pc.list_begin, pc.list_end);
   if (WALK) {
     uint next = 0xffffffffu;
     if (!all_blocked()) next = walk(pc.group_cells.at[g], RESUMED ? pc.resume.at[2u * pc.groups + g] : 0u);
@@ -43,5 +44,6 @@ void main() {
     }
   }
   store_mask(pc.masks);
+  store_visibility(pc.visibility);
   add_statistics(pc.header);
 }

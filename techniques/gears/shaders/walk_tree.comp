@@ -8,6 +8,7 @@
 #include "techniques/gears/shaders/walk.glsl"
 
 
+layout(set = 0, binding = 5) uniform sampler2D boxes;   // 2 texels per node
 layout(push_constant) uniform Push { WalkTreeConstants pc; };
 
 const uint DEPTH = 12u;
@@ -40,7 +41,7 @@ uint walk(uint start) {
     do {
       uint first = node * SG + 1u, child = first + gl_SubgroupInvocationID;
       bool above_leaves = first >= pc.first_leaf;
-      vec4 a = pc.boxes.at[child * 2u], b = pc.boxes.at[child * 2u + 1u];
+      vec4 a = texel(boxes, child * 2u), b = texel(boxes, child * 2u + 1u);
       uint rect;
       bool hit = touches(a.xyz, vec3(a.w, b.xy), rect);
       if (RESUMED) {
@@ -71,7 +72,7 @@ uint walk(uint start) {
       uint i = 0u, left = leaf_mask[0];
       do {
         uint leaf = leaf_first[i] + uint(findLSB(left)) - pc.first_leaf;
-        rasterise_slots(pc.triangles, leaf * SG + gl_SubgroupInvocationID, true, false);
+        rasterise_slots(leaf * SG + gl_SubgroupInvocationID, true, false);
         left &= left - 1u;
         i += left == 0u ? 1u : 0u;
         left = left == 0u ? leaf_mask[i] : left;
@@ -92,12 +93,13 @@ void main() {
   uint g = RESUMED ? n : interleaved(n);
   if (n >= pc.work_groups || g >= pc.groups) return;
   if (RESUMED) g = pc.resume.at[pc.read_list * pc.groups + n];
-  begin_group(g, pc.frame, pc.slots);
+  FrameConstants f = frame_constants();
+  begin_group(g, f, pc.slots, pc.light_samples);
   if (BEGIN)
-    block_horizon(pc.frame.f.position.at[pixel].xyz, pc.frame.f.normal.at[pixel].xyz, pc.frame.f);
+    block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
   else
     load_mask(pc.masks);
-  if (LIST) do_list(pc.triangles, pc.list, pc.list_begin, pc.list_end);
+  if (LIST) do_list(pc.list, pc.list_begin, pc.list_end);
   if (WALK) {
     if (!BEGIN && COUNTING != 2u) update_open();
     uint next = 0xffffffffu;
@@ -108,5 +110,6 @@ void main() {
     }
   }
   store_mask(pc.masks);
+  store_visibility(pc.visibility);
   add_statistics(pc.header);
 }
