@@ -12,10 +12,11 @@ class SampleGroups {
   void setup(gpu::Device& device, uint32_t lanes);
   // Groups that width x height pixels can make at most; each has `lanes` slots.
   uint32_t capacity(uint32_t width, uint32_t height) const;
-  // Texel arrays: a LightBasis; P' (w = 0: no view sample) and Ng per pixel. Not while commands are in flight.
+  // Texel arrays: a LightBasis; P' (w = 0: no view sample) and Ng per pixel. Not while commands are in
+  // flight.
   void bind(VkImageView light, VkImageView origin, VkImageView normal);
   struct Input {
-    uint64_t slots = 0, group_count = 0;   // addresses: out; the count is to be 0 before
+    uint64_t slots = 0, group_count = 0;  // addresses: out; the count is to be 0 before
     uint32_t width = 0, height = 0;
     float slack = 0, depth_weight = 1;
   };

@@ -7,12 +7,13 @@
 
 namespace penumbra {
 
-bool TexelArray::ensure(gpu::Device& device, gpu::PassRecorder& passes, std::size_t count, const std::string& what) {
+bool TexelArray::ensure(gpu::Device& device, gpu::PassRecorder& passes, std::size_t count,
+                        const std::string& what) {
   const std::size_t rows = count / texel_row + 1;
   if (image_ && image_.desc().height >= rows) return false;
   if (rows > device.caps().max_image_2d || texel_row > device.caps().max_image_2d)
-    throw PointError(fmt::format("{} takes an image of {} x {}; this device has at most {} a side.", what, texel_row, rows,
-                                 device.caps().max_image_2d));
+    throw PointError(fmt::format("{} takes an image of {} x {}; this device has at most {} a side.", what,
+                                 texel_row, rows, device.caps().max_image_2d));
   image_ = {};
   gpu::ImageDesc desc;
   desc.width = texel_row;
@@ -25,7 +26,8 @@ bool TexelArray::ensure(gpu::Device& device, gpu::PassRecorder& passes, std::siz
 }
 
 void TexelArray::copy_from(gpu::Commands& commands, const gpu::Buffer& buffer, std::size_t count) const {
-  const uint32_t rows = static_cast<uint32_t>(count / texel_row), rest = static_cast<uint32_t>(count % texel_row);
+  const uint32_t rows = static_cast<uint32_t>(count / texel_row),
+                 rest = static_cast<uint32_t>(count % texel_row);
   VkBufferImageCopy regions[2]{};
   uint32_t used = 0;
   const auto region = [&](uint32_t first, uint32_t width, uint32_t height) {
@@ -38,7 +40,8 @@ void TexelArray::copy_from(gpu::Commands& commands, const gpu::Buffer& buffer, s
   if (rows > 0) region(0, texel_row, rows);
   if (rest > 0) region(rows, rest, 1);
   if (used > 0)
-    vkCmdCopyBufferToImage(commands.handle(), buffer.handle(), image_.handle(), VK_IMAGE_LAYOUT_GENERAL, used, regions);
+    vkCmdCopyBufferToImage(commands.handle(), buffer.handle(), image_.handle(), VK_IMAGE_LAYOUT_GENERAL, used,
+                           regions);
 }
 
 }  // namespace penumbra

@@ -1,6 +1,6 @@
-// An array of vec4 that shaders read by texelFetch: a two-dimensional image of RGBA32F with rows of texel_row entries.
-// On lavapipe a fetch gathers eight lanes at once, where a load by buffer address is a loop over lanes and components,
-// five times slower.
+// An array of vec4 that shaders read by texelFetch: a two-dimensional image of RGBA32F with rows of texel_row
+// entries. On lavapipe a fetch gathers eight lanes at once, where a load by buffer address is a loop over
+// lanes and components, five times slower.
 #pragma once
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
@@ -8,12 +8,12 @@
 
 namespace penumbra {
 
-inline constexpr uint32_t texel_row = 8192;   // as in shaders/texels.glsl
+inline constexpr uint32_t texel_row = 8192;  // as in shaders/texels.glsl
 
 class TexelArray {
  public:
-  // Room for `count` entries; what was there is lost when it grows. True when the view changed. Throws PointError when
-  // the device has no image so large.
+  // Room for `count` entries; what was there is lost when it grows. True when the view changed. Throws
+  // PointError when the device has no image so large.
   bool ensure(gpu::Device& device, gpu::PassRecorder& passes, std::size_t count, const std::string& what);
   // Entries [0, count) from a buffer of vec4.
   void copy_from(gpu::Commands& commands, const gpu::Buffer& buffer, std::size_t count) const;

@@ -33,8 +33,10 @@ double hull_area(std::vector<Vec2d>& points) {
 
 class Projector {
  public:
-  Projector(const FrameConstants& f, const Header& h) : f_(f), farthest_(static_cast<double>(std::bit_cast<float>(h.farthest))) {
-    for (uint32_t c = 0; c < f.light.corner_count; ++c) corners_.push_back(camera(Vec3d(f.light.corners[c].xyz())));
+  Projector(const FrameConstants& f, const Header& h)
+      : f_(f), farthest_(static_cast<double>(std::bit_cast<float>(h.farthest))) {
+    for (uint32_t c = 0; c < f.light.corner_count; ++c)
+      corners_.push_back(camera(Vec3d(f.light.corners[c].xyz())));
   }
 
   // False when the shadow volume reaches the camera's plane.
@@ -115,7 +117,8 @@ void add_cell_counters(const CellCounts& counts, Counters& counters) {
 void add_area_counters(const Geometry& geometry, const FrameConstants& constants, const Header& header,
                        Counters& counters) {
   Projector projector(constants, header);
-  const std::size_t count = geometry.triangle_count(), step = std::max<std::size_t>(1, count / most_triangles);
+  const std::size_t count = geometry.triangle_count(),
+                    step = std::max<std::size_t>(1, count / most_triangles);
   Areas areas;
   double left_out = 0;
   for (std::size_t t = 0; t < count; t += step)

@@ -37,9 +37,12 @@ void Cells::setup(FrameState& state) {
     const gpu::Specialization wide[] = {{0, wide_lanes}, {1, stage}, {2, 0}};
     const gpu::Specialization large[] = {{0, wide_lanes}, {1, stage}, {2, 1}};
     fit_[stage] = gpu::ComputePipeline(device, gears_fit_grid_spv, sizeof(FitGridConstants), wide);
-    bin_samples_[stage] = gpu::ComputePipeline(device, gears_bin_samples_spv, sizeof(BinSamplesConstants), subgroup);
-    bin_small_[stage] = gpu::ComputePipeline(device, gears_bin_triangles_spv, sizeof(BinTrianglesConstants), wide);
-    bin_large_[stage] = gpu::ComputePipeline(device, gears_bin_triangles_spv, sizeof(BinTrianglesConstants), large);
+    bin_samples_[stage] =
+        gpu::ComputePipeline(device, gears_bin_samples_spv, sizeof(BinSamplesConstants), subgroup);
+    bin_small_[stage] =
+        gpu::ComputePipeline(device, gears_bin_triangles_spv, sizeof(BinTrianglesConstants), wide);
+    bin_large_[stage] =
+        gpu::ComputePipeline(device, gears_bin_triangles_spv, sizeof(BinTrianglesConstants), large);
   }
   walker_.setup(state, gears_walk_cells_grid_spv, gears_walk_cells_any_spv, sizeof(WalkCellsConstants), 0);
 }
@@ -221,14 +224,15 @@ void Cells::walk_chunks(FrameState& state, const RenderInput& in, gpu::PassRecor
     });
     pc.first_group = chunk.first_group;
     pc.chunk_begin = chunk.first_offset;
-    walks_ += walker_.run(state, passes, "walk", chunk.groups, list_count_, true, statistics,
-                          [pc](gpu::Commands& commands, const gpu::ComputePipeline& p, const Walker::Turn& t) mutable {
-                            pc.work_groups = t.work_groups;
-                            pc.list_begin = t.list_begin;
-                            pc.list_end = t.list_end;
-                            pc.read_list = t.read_list;
-                            commands.dispatch(p, pc, t.work_groups);
-                          });
+    walks_ += walker_.run(
+        state, passes, "walk", chunk.groups, list_count_, true, statistics,
+        [pc](gpu::Commands& commands, const gpu::ComputePipeline& p, const Walker::Turn& t) mutable {
+          pc.work_groups = t.work_groups;
+          pc.list_begin = t.list_begin;
+          pc.list_end = t.list_end;
+          pc.read_list = t.read_list;
+          commands.dispatch(p, pc, t.work_groups);
+        });
   }
 }
 
@@ -253,12 +257,14 @@ void Cells::count(FrameState& state, const RenderInput& in, gpu::PassRecorder& p
     walk_chunks(state, in, passes, statistics);
     return state.read_header(passes);
   };
-  const Header walked = recount(Walker::Statistics::as_walked), all = recount(Walker::Statistics::nothing_skipped);
+  const Header walked = recount(Walker::Statistics::as_walked),
+               all = recount(Walker::Statistics::nothing_skipped);
   CellCounts counts;
   counts.samples.resize(cell_count());
   counts.triangles.resize(cell_count());
   gpu::download(passes, "read_counts", sample_counts_, counts.samples.data(), counts.samples.size() * 4);
-  gpu::download(passes, "read_counts", triangle_counts_, counts.triangles.data(), counts.triangles.size() * 4);
+  gpu::download(passes, "read_counts", triangle_counts_, counts.triangles.data(),
+                counts.triangles.size() * 4);
   passes.finish();
   add_cell_counters(counts, counters);
   add_area_counters(in.scene_case->frame->geometry, state.constants, all, counters);
@@ -272,9 +278,9 @@ void Cells::count(FrameState& state, const RenderInput& in, gpu::PassRecorder& p
 
 uint64_t Cells::bytes() const {
   uint64_t sum = 0;
-  for (const gpu::Buffer* b : {&histogram_, &sample_counts_, &first_groups_, &triangle_counts_, &offsets_, &placed_,
-                               &sample_scratch_, &triangle_scratch_, &scratch_host_, &counts_host_, &group_cells_,
-                               &large_, &assigned_})
+  for (const gpu::Buffer* b : {&histogram_, &sample_counts_, &first_groups_, &triangle_counts_, &offsets_,
+                               &placed_, &sample_scratch_, &triangle_scratch_, &scratch_host_, &counts_host_,
+                               &group_cells_, &large_, &assigned_})
     sum += b->bytes();
   return sum;
 }

@@ -1,5 +1,5 @@
-// assignment: triangles. The paper's grid: view samples and triangles assigned to cells by projecting them with the grid
-// camera C, everything anew every frame [GEARS, A.1 to A.3].
+// assignment: triangles. The paper's grid: view samples and triangles assigned to cells by projecting them
+// with the grid camera C, everything anew every frame [GEARS, A.1 to A.3].
 #pragma once
 #include "techniques/common/prefix_scan.h"
 #include "techniques/gears/frame_state.h"
@@ -21,15 +21,16 @@ class Cells {
   // Cells [begin, end) whose lists are made and used together.
   struct Chunk {
     uint32_t begin = 0, end = 0;
-    uint32_t first_offset = 0;       // modulo 2^32
+    uint32_t first_offset = 0;  // modulo 2^32
     uint32_t first_group = 0, groups = 0;
   };
-  uint32_t cell_count() const;       // with the one for what has no place on the grid
+  uint32_t cell_count() const;  // with the one for what has no place on the grid
   void allocate(FrameState& state);
   void bin_samples(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   void count_triangles(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   void plan_chunks(FrameState& state, gpu::PassRecorder& passes);
-  void walk_chunks(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Walker::Statistics statistics);
+  void walk_chunks(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes,
+                   Walker::Statistics statistics);
   void bin_triangles(const FrameState& state, gpu::Commands& commands, uint32_t stage, uint32_t large,
                      const Chunk& chunk) const;
   uint64_t budget(const FrameState& state) const;
@@ -43,7 +44,7 @@ class Cells {
   gpu::Buffer group_cells_, large_, assigned_;
   std::vector<Chunk> chunks_;
   uint32_t grid_size_ = 0, group_count_ = 0, list_count_ = 0, large_count_ = 0, walks_ = 0;
-  uint64_t assignments_ = 0;         // of triangles to cells
+  uint64_t assignments_ = 0;  // of triangles to cells
 };
 
 }  // namespace penumbra::gears

@@ -72,7 +72,8 @@ void Clusters::group(FrameState& state, gpu::PassRecorder& passes) {
   passes.device_pass("group_samples", [&](gpu::Commands& commands) { groups_.record(commands, input); });
 }
 
-void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Walker::Statistics statistics) {
+void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes,
+                    Walker::Statistics statistics) {
   WalkTreeConstants pc{};
   pc.light_samples = state.light_samples.address();
   pc.visibility = in.device.visibility->address();
@@ -83,17 +84,18 @@ void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder&
   pc.header = state.header.address();
   pc.groups = group_count_;
   pc.first_leaf = order_.first_leaf;
-  walks_ = walker_.run(state, passes, "walk", group_count_, list_count_, true, statistics,
-                       [pc](gpu::Commands& commands, const gpu::ComputePipeline& p, const Walker::Turn& t) mutable {
-                         pc.list_begin = t.list_begin;
-                         pc.list_end = t.list_end;
-                         pc.read_list = t.read_list;
-                         // First turns take the groups in an interleaved order, over a rectangle of 64 rows.
-                         const uint64_t columns = (uint64_t{pc.groups} + 1023) / 1024;
-                         const uint64_t work = t.resumed ? t.work_groups : columns * 1024;
-                         pc.work_groups = static_cast<uint32_t>(work);
-                         commands.dispatch(p, pc, work);
-                       });
+  walks_ = walker_.run(
+      state, passes, "walk", group_count_, list_count_, true, statistics,
+      [pc](gpu::Commands& commands, const gpu::ComputePipeline& p, const Walker::Turn& t) mutable {
+        pc.list_begin = t.list_begin;
+        pc.list_end = t.list_end;
+        pc.read_list = t.read_list;
+        // First turns take the groups in an interleaved order, over a rectangle of 64 rows.
+        const uint64_t columns = (uint64_t{pc.groups} + 1023) / 1024;
+        const uint64_t work = t.resumed ? t.work_groups : columns * 1024;
+        pc.work_groups = static_cast<uint32_t>(work);
+        commands.dispatch(p, pc, work);
+      });
 }
 
 void Clusters::render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
@@ -106,7 +108,8 @@ void Clusters::render(FrameState& state, const RenderInput& in, gpu::PassRecorde
   walk(state, in, passes, Walker::Statistics::none);
 }
 
-void Clusters::count(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Counters& counters) {
+void Clusters::count(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes,
+                     Counters& counters) {
   const uint32_t walks = walks_;
   const auto run = [&](Walker::Statistics statistics) {
     state.begin(in, passes);

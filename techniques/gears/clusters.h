@@ -1,7 +1,8 @@
-// assignment: clusters. Deviation from [GEARS, A.1 to A.3]: no grid. The triangles hang in a box tree whose topology is
-// made once and whose boxes are refitted every frame; view samples are grouped by place, and each group walks the tree.
-// Reason: a cell's list holds every triangle whose shadow volume's bounding rectangle touches the cell, ten times what
-// the cell's view samples need; the tree leaves most of it out and stops where the light is already hidden.
+// assignment: clusters. Deviation from [GEARS, A.1 to A.3]: no grid. The triangles hang in a box tree whose
+// topology is made once and whose boxes are refitted every frame; view samples are grouped by place, and each
+// group walks the tree. Reason: a cell's list holds every triangle whose shadow volume's bounding rectangle
+// touches the cell, ten times what the cell's view samples need; the tree leaves most of it out and stops
+// where the light is already hidden.
 #pragma once
 #include "techniques/common/sample_groups.h"
 #include "techniques/gears/frame_state.h"
@@ -24,14 +25,15 @@ class Clusters {
  private:
   void prepare(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   void group(FrameState& state, gpu::PassRecorder& passes);
-  void walk(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Walker::Statistics statistics);
+  void walk(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes,
+            Walker::Statistics statistics);
 
   SampleGroups groups_;
   Walker walker_;
   gpu::ComputePipeline prepare_, refit_;
   gpu::Buffer boxes_;
-  TexelArray box_texels_;        // the boxes again, for fetching
-  TriangleOrder order_;          // without its slots once they are on the device
+  TexelArray box_texels_;  // the boxes again, for fetching
+  TriangleOrder order_;    // without its slots once they are on the device
   uint32_t group_count_ = 0, list_count_ = 0, walks_ = 0;
 };
 

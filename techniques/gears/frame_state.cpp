@@ -24,7 +24,8 @@ void FrameState::set_light(const Case& c, gpu::PassRecorder& passes) {
   gpu::ensure(light_samples, *device, bytes, gpu::Memory::device, "the light samples");
   gpu::upload(passes, "upload_light", light_samples, samples.points.data(), bytes);
   if (layout.weighted) {
-    gpu::ensure(weights, *device, samples.weights.size() * 4, gpu::Memory::device, "the light samples' weights");
+    gpu::ensure(weights, *device, samples.weights.size() * 4, gpu::Memory::device,
+                "the light samples' weights");
     gpu::upload(passes, "upload_light", weights, samples.weights.data(), samples.weights.size() * 4);
   }
   gpu::ensure(frame, *device, sizeof(FrameConstants), gpu::Memory::device, "the frame's constants");
@@ -38,7 +39,8 @@ void FrameState::set_light(const Case& c, gpu::PassRecorder& passes) {
                 gpu::Memory::device, "the masks as walked");
 }
 
-void FrameState::set_order(const std::vector<uint32_t>& slots_to_triangles, uint32_t tree, gpu::PassRecorder& passes) {
+void FrameState::set_order(const std::vector<uint32_t>& slots_to_triangles, uint32_t tree,
+                           gpu::PassRecorder& passes) {
   tree_slots = tree;
   slot_count = static_cast<uint32_t>(slots_to_triangles.size());
   const std::size_t bytes = slots_to_triangles.size() * 4;
@@ -76,7 +78,8 @@ void FrameState::begin(const RenderInput& in, gpu::PassRecorder& passes) {
 
 gpu::ComputePipeline prepare_pipeline(const FrameState& state) {
   const gpu::Specialization constants[] = {{0, state.lanes}, {1, state.layout.grid}};
-  return gpu::ComputePipeline(*state.device, gears_prepare_triangles_spv, sizeof(PrepareConstants), constants);
+  return gpu::ComputePipeline(*state.device, gears_prepare_triangles_spv, sizeof(PrepareConstants),
+                              constants);
 }
 
 void FrameState::prepare(gpu::Commands& commands, const gpu::ComputePipeline& pipeline,
@@ -101,33 +104,32 @@ void FrameState::prepare(gpu::Commands& commands, const gpu::ComputePipeline& pi
 }
 
 Header FrameState::read_header(gpu::PassRecorder& passes) {
-  passes.device_pass("read_counts", [&](gpu::Commands& commands) {
-    commands.copy(header, header_host, sizeof(Header));
-  });
+  passes.device_pass("read_counts",
+                     [&](gpu::Commands& commands) { commands.copy(header, header_host, sizeof(Header)); });
   passes.finish();
   return header_host.view<Header>()[0];
 }
 
 uint64_t FrameState::bytes() const {
   uint64_t sum = 0;
-  for (const TexelArray* t : {&frame_texels, &origin_texels, &position_texels, &normal_texels, &triangle_texels})
+  for (const TexelArray* t :
+       {&frame_texels, &origin_texels, &position_texels, &normal_texels, &triangle_texels})
     sum += t->bytes();
-  for (const gpu::Buffer* b : {&frame, &header, &header_host, &light_samples, &weights, &order, &triangles, &list, &slots,
-                               &resume, &walked})
+  for (const gpu::Buffer* b : {&frame, &header, &header_host, &light_samples, &weights, &order, &triangles,
+                               &list, &slots, &resume, &walked})
     sum += b->bytes();
   return sum;
 }
 
 void Resolve::setup(const FrameState& state) {
   const MaskLayout& m = state.layout;
-  const gpu::Specialization constants[] = {
-      {0, wide_lanes},
-      {1, static_cast<uint32_t>(m.samples)},
-      {2, static_cast<uint32_t>(m.columns)},
-      {3, static_cast<uint32_t>(m.pitch)},
-      {4, static_cast<uint32_t>(m.words)},
-      {5, m.packed},
-      {6, m.weighted}};
+  const gpu::Specialization constants[] = {{0, wide_lanes},
+                                           {1, static_cast<uint32_t>(m.samples)},
+                                           {2, static_cast<uint32_t>(m.columns)},
+                                           {3, static_cast<uint32_t>(m.pitch)},
+                                           {4, static_cast<uint32_t>(m.words)},
+                                           {5, m.packed},
+                                           {6, m.weighted}};
   pipeline_ = gpu::ComputePipeline(*state.device, gears_resolve_spv, sizeof(ResolveConstants), constants);
 }
 

@@ -1,4 +1,5 @@
-// What every stage of a frame shares: constants, counts, the view samples' groups, triangles in working space, masks.
+// What every stage of a frame shares: constants, counts, the view samples' groups, triangles in working
+// space, masks.
 #pragma once
 #include "gpu/buffer.h"
 #include "gpu/pass_recorder.h"
@@ -13,7 +14,7 @@ namespace penumbra::gears {
 
 // Lanes of a workgroup that is one subgroup. Devices with wider subgroups leave the rest idle.
 uint32_t lanes_of(const gpu::Device& device);
-inline constexpr uint32_t wide_lanes = 64;   // kernels without subgroup operations
+inline constexpr uint32_t wide_lanes = 64;  // kernels without subgroup operations
 inline constexpr uint64_t groups_for(uint64_t items, uint64_t lanes) { return (items + lanes - 1) / lanes; }
 
 struct FrameState {
@@ -23,15 +24,15 @@ struct FrameState {
   MaskLayout layout;
   FrameConstants constants{};
   uint32_t width = 0, height = 0;
-  float slack = 0;                    // more than |P' - P|, world
+  float slack = 0;  // more than |P' - P|, world
 
   gpu::Buffer frame, header, header_host;
-  gpu::Buffer light_samples, weights; // world; uploaded when the light changes
-  gpu::Buffer order, triangles, list; // slots to triangles; 3 vec4 per slot; slots for the list
+  gpu::Buffer light_samples, weights;  // world; uploaded when the light changes
+  gpu::Buffer order, triangles, list;  // slots to triangles; 3 vec4 per slot; slots for the list
   // For fetching: the frame's constants, P', P and Ng per pixel, the triangles again.
   TexelArray frame_texels, origin_texels, position_texels, normal_texels, triangle_texels;
-  gpu::Buffer slots, resume;          // view samples of groups; groups to go on with
-  gpu::Buffer walked;                 // masks as walked, where not packed
+  gpu::Buffer slots, resume;  // view samples of groups; groups to go on with
+  gpu::Buffer walked;         // masks as walked, where not packed
   uint32_t tree_slots = 0, slot_count = 0;
 
   uint32_t pixels() const { return width * height; }
@@ -41,8 +42,9 @@ struct FrameState {
   void set_order(const std::vector<uint32_t>& slots_to_triangles, uint32_t tree, gpu::PassRecorder& passes);
   // Constants up, counts and masks cleared: the first pass of a frame.
   void begin(const RenderInput& in, gpu::PassRecorder& passes);
-  void prepare(gpu::Commands& commands, const gpu::ComputePipeline& pipeline, const GeometryOnDevice& geometry,
-               const gpu::Buffer& boxes, uint32_t first_leaf, uint32_t leaf_groups);
+  void prepare(gpu::Commands& commands, const gpu::ComputePipeline& pipeline,
+               const GeometryOnDevice& geometry, const gpu::Buffer& boxes, uint32_t first_leaf,
+               uint32_t leaf_groups);
   // Waits for the device; what it counted so far.
   Header read_header(gpu::PassRecorder& passes);
   // A walk writes visibility itself: masks have their final layout, and all light samples one weight.

@@ -42,7 +42,8 @@ class Gears final : public Technique {
     if (!built_ || changes.topology || changes.light || changes.positions) state_.set_light(c, passes);
     if (!ready_ || *ready_ != state_.layout) setup(c, passes);
     if (!built_ || changes.topology)
-      clusters() ? clusters_.build(state_, c.frame->geometry, passes) : cells_.build(state_, c.frame->geometry, passes);
+      clusters() ? clusters_.build(state_, c.frame->geometry, passes)
+                 : cells_.build(state_, c.frame->geometry, passes);
     built_ = true;
     passes.finish();
     clusters() ? clusters_.bind(state_) : cells_.bind(state_);
@@ -73,7 +74,7 @@ class Gears final : public Technique {
 
   GearsParams params_;
   FrameState state_;
-  std::optional<MaskLayout> ready_;   // what the pipelines are made for
+  std::optional<MaskLayout> ready_;  // what the pipelines are made for
   bool built_ = false;
   RenderInput last_;
   gpu::PassRecorder* passes_ = nullptr;

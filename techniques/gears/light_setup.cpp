@@ -59,7 +59,8 @@ void grid_space(FrameConstants& f, const Light& light, const MaskLayout& layout)
 }
 
 // The world, moved so that its numbers are small.
-void world_space(FrameConstants& f, const Light& light, const Box& samples, bool infinite, const Box& bounds) {
+void world_space(FrameConstants& f, const Light& light, const Box& samples, bool infinite,
+                 const Box& bounds) {
   const Vec3d origin(infinite ? bounds.center() : samples.center());
   f.light.row_x = {1, 0, 0, 0};
   f.light.row_y = {0, 1, 0, 0};
@@ -74,7 +75,8 @@ void world_space(FrameConstants& f, const Light& light, const Box& samples, bool
 
 Vec3d to_working(const FrameConstants& f, Vec3d world) {
   const Vec3d d = world - Vec3d(f.light.origin.xyz());
-  return {dot(Vec3d(f.light.row_x.xyz()), d), dot(Vec3d(f.light.row_y.xyz()), d), dot(Vec3d(f.light.row_z.xyz()), d)};
+  return {dot(Vec3d(f.light.row_x.xyz()), d), dot(Vec3d(f.light.row_y.xyz()), d),
+          dot(Vec3d(f.light.row_z.xyz()), d)};
 }
 
 // Camera C: at the light's centre, looking along its direction (a rectangle's front normal, a spot's axis, a
@@ -102,7 +104,8 @@ void grid_camera(FrameConstants& f, const Light& light, const LightSamples& samp
 
 bool is_regular_grid(const Light& light, const LightSamples& samples) {
   const int w = samples.width, h = samples.height;
-  if ((light.kind != LightKind::rectangle && light.kind != LightKind::textured_rectangle) || w < 1 || h < 1) return false;
+  if ((light.kind != LightKind::rectangle && light.kind != LightKind::textured_rectangle) || w < 1 || h < 1)
+    return false;
   if (w > 64 || h > 64 || samples.count() != w * h || samples.count() < 2) return false;
   const float tolerance = 1e-5f * light.size() / static_cast<float>(std::max(w, h));
   for (int i = 0; i < samples.count(); ++i) {
@@ -148,17 +151,20 @@ FrameConstants frame_constants(const Light& light, const LightSamples& samples, 
   f.cone = {0, 0, 0, -2};
   f.apex = with_w(Vec3d(light.center));
   if (light.kind == LightKind::spot)
-    f.cone = with_w(normalize(Vec3d(light.direction)),
-                    static_cast<float>(std::cos(static_cast<double>(light.cone_degrees) * std::numbers::pi / 180)));
+    f.cone = with_w(
+        normalize(Vec3d(light.direction)),
+        static_cast<float>(std::cos(static_cast<double>(light.cone_degrees) * std::numbers::pi / 180)));
   grid_camera(f, light, samples, layout, bounds);
   double largest = 0;
   for (int i = 0; i < 8; ++i) {
-    const Vec3d c = to_working(f, {i & 1 ? static_cast<double>(bounds.hi.x) : static_cast<double>(bounds.lo.x),
-                                   i & 2 ? static_cast<double>(bounds.hi.y) : static_cast<double>(bounds.lo.y),
-                                   i & 4 ? static_cast<double>(bounds.hi.z) : static_cast<double>(bounds.lo.z)});
+    const Vec3d c =
+        to_working(f, {i & 1 ? static_cast<double>(bounds.hi.x) : static_cast<double>(bounds.lo.x),
+                       i & 2 ? static_cast<double>(bounds.hi.y) : static_cast<double>(bounds.lo.y),
+                       i & 4 ? static_cast<double>(bounds.hi.z) : static_cast<double>(bounds.lo.z)});
     largest = std::max({largest, std::abs(c.x), std::abs(c.y), std::abs(c.z)});
   }
-  // Four units in the last place of the largest coordinate: the dot product's three roundings, and the subtraction's.
+  // Four units in the last place of the largest coordinate: the dot product's three roundings, and the
+  // subtraction's.
   f.pad = static_cast<float>(std::max(largest * 0x1p-22, 1e-30));
   f.near = 16 * f.pad;
   f.paper_extrusion = extrusion == GearsParams::Extrusion::paper ? 1 : 0;

@@ -7,16 +7,16 @@
 
 namespace penumbra::gears {
 
-// Layout of a mask while it is walked. A regular grid of light samples takes `pitch` bits per row; other sets one bit
-// after the other.
+// Layout of a mask while it is walked. A regular grid of light samples takes `pitch` bits per row; other sets
+// one bit after the other.
 struct MaskLayout {
   bool grid = false;
-  bool infinite = false;         // samples are directions
+  bool infinite = false;  // samples are directions
   bool weighted = false;
   int columns = 1, rows = 1, pitch = 32;
   int samples = 1, words = 1;
-  int mask_words = 1;            // words of the mask that is handed out
-  bool packed = true;            // the walked mask is laid out as the one handed out
+  int mask_words = 1;  // words of the mask that is handed out
+  bool packed = true;  // the walked mask is laid out as the one handed out
   bool operator==(const MaskLayout&) const = default;
 };
 

@@ -6,25 +6,31 @@ const ParamTable<GearsParams>& gears_params() {
   using P = GearsParams;
   static const ParamTable<P> table = [] {
     ParamTable<P> t;
-    t.integer("grid_size", &P::grid_size, 1, 1024,
-              {"cells", "G",
-               "Cells along a side of the grid that assignment=triangles assigns view samples and triangles to."})
+    t.integer(
+         "grid_size", &P::grid_size, 1, 1024,
+         {"cells", "G",
+          "Cells along a side of the grid that assignment=triangles assigns view samples and triangles to."})
         .axis();
-    t.choice("assignment", &P::assignment, {"triangles", "clusters"},
-             {"", "T_uv",
-              "How view samples find their triangles: the paper's grid of triangles, or a refitted box tree that "
-              "groups of view samples walk together."});
-    t.choice("extrusion_length", &P::extrusion_length, {"conservative", "paper"},
-             {"", "F_ij",
-              "Where a triangle's shadow volume ends: at the farthest view sample, or, as the slides have it, at "
-              "twice the vertex's distance from the light, which can miss what lies farther."});
-    t.choice("backend", &P::backend, {"vulkan", "cpu"}, {"", "", "What computes: the Vulkan device, or the host."});
-    t.choice("triangle_order", &P::triangle_order, {"morton", "kd"},
-             {"", "",
-              "Order of the triangles in the box tree, made once: a Morton curve, or median cuts of the longest "
-              "axis (slower to make, tighter boxes)."});
+    t.choice(
+        "assignment", &P::assignment, {"triangles", "clusters"},
+        {"", "T_uv",
+         "How view samples find their triangles: the paper's grid of triangles, or a refitted box tree that "
+         "groups of view samples walk together."});
+    t.choice(
+        "extrusion_length", &P::extrusion_length, {"conservative", "paper"},
+        {"", "F_ij",
+         "Where a triangle's shadow volume ends: at the farthest view sample, or, as the slides have it, at "
+         "twice the vertex's distance from the light, which can miss what lies farther."});
+    t.choice("backend", &P::backend, {"vulkan", "cpu"},
+             {"", "", "What computes: the Vulkan device, or the host."});
+    t.choice(
+        "triangle_order", &P::triangle_order, {"morton", "kd"},
+        {"", "",
+         "Order of the triangles in the box tree, made once: a Morton curve, or median cuts of the longest "
+         "axis (slower to make, tighter boxes)."});
     t.integer("list_budget_mib", &P::list_budget_mib, 1, 16384,
-              {"MiB", "", "Memory for the cells' lists of triangles; cells that need more are done in several turns."});
+              {"MiB", "",
+               "Memory for the cells' lists of triangles; cells that need more are done in several turns."});
     t.integer("leaf_batch", &P::leaf_batch, 1, 32,
               {"leaves", "", "Leaves that a group collects before it rasterises their triangles."});
     t.integer("dispatch_turns", &P::dispatch_turns, 64, 20000,

@@ -10,7 +10,7 @@ namespace penumbra::gears {
 namespace {
 
 constexpr std::size_t max_outside = 32;
-constexpr float outside_share = 0.25f;   // of the scene's diagonal
+constexpr float outside_share = 0.25f;  // of the scene's diagonal
 
 struct Item {
   Vec3f center;
@@ -47,8 +47,8 @@ void sort_by_morton(std::vector<Item>& items) {
   for (std::size_t i = 0; i < items.size(); ++i) items[i].triangle = keys[i].second;
 }
 
-// Cuts [begin, end) into parts of `capacity` items, binary cuts at the middle part, then each part into parts of
-// capacity / arity, down to leaves.
+// Cuts [begin, end) into parts of `capacity` items, binary cuts at the middle part, then each part into parts
+// of capacity / arity, down to leaves.
 void cut(Item* begin, Item* end, std::size_t capacity, std::size_t arity) {
   const std::size_t count = static_cast<std::size_t>(end - begin);
   if (count <= arity) return;
@@ -109,7 +109,8 @@ TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, GearsPar
   TriangleOrder order;
   const uint32_t count = static_cast<uint32_t>(items.size());
   const uint32_t leaves = std::max((count + arity - 1) / arity, 1u);
-  order.leaf_count = (leaves + arity - 1) / arity * arity;   // siblings all exist, empty where there is nothing
+  order.leaf_count =
+      (leaves + arity - 1) / arity * arity;  // siblings all exist, empty where there is nothing
   order.tree_slots = order.leaf_count * arity;
   // At least one level of inner nodes; all of them exist, so the tree ends after the last leaf's siblings.
   std::size_t capacity = arity;

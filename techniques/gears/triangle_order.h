@@ -11,15 +11,16 @@ namespace penumbra::gears {
 // A complete tree of `arity` children per node and `arity` triangles per leaf; node n has the children
 // n * arity + 1 ... n * arity + arity.
 struct TriangleOrder {
-  std::vector<uint32_t> slots;      // triangle of each slot, or no_triangle; leaf l has slots [l * arity, (l + 1) * arity)
-  uint32_t tree_slots = 0;          // slots past it are triangles outside the tree, each on its own
+  std::vector<uint32_t>
+      slots;  // triangle of each slot, or no_triangle; leaf l has slots [l * arity, (l + 1) * arity)
+  uint32_t tree_slots = 0;  // slots past it are triangles outside the tree, each on its own
   uint32_t leaf_count = 0;
-  uint32_t first_leaf = 0;          // node number
-  uint32_t node_count = 0;          // nodes to allocate: every child of an inner node exists
+  uint32_t first_leaf = 0;  // node number
+  uint32_t node_count = 0;  // nodes to allocate: every child of an inner node exists
 };
 
-// Triangles whose extent is a large part of the scene's would blow up all boxes above them: at most `max_outside` of
-// them stay outside the tree.
+// Triangles whose extent is a large part of the scene's would blow up all boxes above them: at most
+// `max_outside` of them stay outside the tree.
 TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, GearsParams::TriangleOrder kind);
 
 }  // namespace penumbra::gears

@@ -6,7 +6,8 @@
 namespace penumbra::gears {
 namespace {
 
-// Loop turns that a kernel may use beyond its limit before it looks at it again; see dispatch_turns and walk.glsl.
+// Loop turns that a kernel may use beyond its limit before it looks at it again; see dispatch_turns and
+// walk.glsl.
 constexpr uint32_t turns_between_looks = 30000;
 
 }  // namespace
@@ -69,8 +70,8 @@ const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Vari
   return p;
 }
 
-uint32_t Walker::run(FrameState& state, gpu::PassRecorder& passes, const char* name, uint32_t groups, uint32_t list_count,
-                     bool begin, Statistics statistics, const Dispatch& dispatch) {
+uint32_t Walker::run(FrameState& state, gpu::PassRecorder& passes, const char* name, uint32_t groups,
+                     uint32_t list_count, bool begin, Statistics statistics, const Dispatch& dispatch) {
   if (groups == 0) return 0;
   const auto turn = [&](const Variant& v, const Turn& t) {
     const gpu::ComputePipeline& p = pipeline(state, v);
@@ -87,10 +88,12 @@ uint32_t Walker::run(FrameState& state, gpu::PassRecorder& passes, const char* n
   bool first = begin;
   if (begin && !merge)
     for (uint32_t from = 0; from < std::max(list_count, 1u); from += part) {
-      turn({first, list_count > 0, false, false, statistics}, {groups, from, std::min(from + part, list_count), 0, false});
+      turn({first, list_count > 0, false, false, statistics},
+           {groups, from, std::min(from + part, list_count), 0, false});
       first = false;
     }
-  turn({merge, merge && list_count > 0, true, false, statistics}, {groups, 0, merge ? list_count : 0, 0, false});
+  turn({merge, merge && list_count > 0, true, false, statistics},
+       {groups, 0, merge ? list_count : 0, 0, false});
   uint32_t walks = 1;
   for (uint32_t read = 1;; read ^= 1, ++walks) {
     const uint32_t left = state.read_header(passes).resume_count;

@@ -1,5 +1,5 @@
-// Runs a walk kernel (over the tree or the cells) to its end: first what stays outside the tree, then the walk, then
-// again for the groups that used up their loop turns, until none is left.
+// Runs a walk kernel (over the tree or the cells) to its end: first what stays outside the tree, then the
+// walk, then again for the groups that used up their loop turns, until none is left.
 #pragma once
 #include <functional>
 #include <map>
@@ -22,17 +22,17 @@ class Walker {
   };
   using Dispatch = std::function<void(gpu::Commands&, const gpu::ComputePipeline&, const Turn&)>;
 
-  // Code for regular grids and for any samples; `more_arrays`: how many texel arrays it fetches from beside the state's. Makes the kernel that
-  // every frame needs.
+  // Code for regular grids and for any samples; `more_arrays`: how many texel arrays it fetches from beside
+  // the state's. Makes the kernel that every frame needs.
   void setup(const FrameState& state, gpu::Spirv grid, gpu::Spirv any, uint32_t push_bytes,
              uint32_t more_arrays);
-  // Arrays that the kernel fetches from: the state's and then `more`. Again whenever they were made anew; not while
-  // commands are in flight.
+  // Arrays that the kernel fetches from: the state's and then `more`. Again whenever they were made anew; not
+  // while commands are in flight.
   void bind(const FrameState& state, std::span<const VkImageView> more);
-  // Runs passes called `name`. `begin`: masks are begun and the list done, else only the walk. Returns the number of
-  // dispatches of the walk itself (1 when no group had to go on).
-  uint32_t run(FrameState& state, gpu::PassRecorder& passes, const char* name, uint32_t groups, uint32_t list_count,
-               bool begin, Statistics statistics, const Dispatch& dispatch);
+  // Runs passes called `name`. `begin`: masks are begun and the list done, else only the walk. Returns the
+  // number of dispatches of the walk itself (1 when no group had to go on).
+  uint32_t run(FrameState& state, gpu::PassRecorder& passes, const char* name, uint32_t groups,
+               uint32_t list_count, bool begin, Statistics statistics, const Dispatch& dispatch);
 
  private:
   struct Variant {

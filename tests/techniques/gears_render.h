@@ -70,9 +70,11 @@ class GearsRun {
     scene_.passes.finish();
   }
   GearsPicture picture() {
-    GearsPicture p{std::vector<float>(visibility_.bytes() / 4), std::vector<uint32_t>(mask_.bytes() / 4)};
-    gpu::download(scene_.passes, "download", visibility_, p.visibility.data(), visibility_.bytes());
-    gpu::download(scene_.passes, "download", mask_, p.mask.data(), mask_.bytes());
+    const std::size_t pixels = scene_.view->host().pixel_count();
+    GearsPicture p{std::vector<float>(pixels),
+                   std::vector<uint32_t>(pixels * static_cast<std::size_t>(scene_.samples.mask_words()))};
+    gpu::download(scene_.passes, "download", visibility_, p.visibility.data(), p.visibility.size() * 4);
+    gpu::download(scene_.passes, "download", mask_, p.mask.data(), p.mask.size() * 4);
     scene_.passes.finish();
     return p;
   }

@@ -34,6 +34,10 @@ struct FrameConstants {
   PENUMBRA_UINT paper_extrusion;
 };
 
+// Places in FrameConstants, for shaders that fetch them as texels.
+const PENUMBRA_UINT light_lo_texel = 13, light_hi_texel = 14, first_texel = 15, step_u_texel = 16, step_v_texel = 17,
+                    cone_texel = 24, apex_texel = 25, front_texel = 26, pad_texel = 27;
+
 // Counts that the device makes and the host reads.
 struct Header {
   PENUMBRA_UINT group_count;            // groups of view samples
@@ -50,6 +54,11 @@ struct Header {
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameConstants) == 208 + 12 * 16 + 32 + 16 && offsetof(FrameConstants, pad) == 432);
+static_assert(offsetof(FrameConstants, light_lo) == 16 * light_lo_texel && offsetof(FrameConstants, light_hi) == 16 * light_hi_texel);
+static_assert(offsetof(FrameConstants, first) == 16 * first_texel && offsetof(FrameConstants, step_u) == 16 * step_u_texel &&
+              offsetof(FrameConstants, step_v) == 16 * step_v_texel && offsetof(FrameConstants, cone) == 16 * cone_texel &&
+              offsetof(FrameConstants, apex) == 16 * apex_texel && offsetof(FrameConstants, front) == 16 * front_texel &&
+              offsetof(FrameConstants, pad) == 16 * pad_texel);
 static_assert(sizeof(Header) == 80 && offsetof(Header, nodes) == 32 && offsetof(Header, grid_lo) == 64);
 }  // namespace penumbra::gears
 #endif

@@ -28,15 +28,15 @@ layout(set = 0, binding = 4) uniform sampler2D triangles;       // 3 texels per 
 FrameConstants frame_constants() {
   FrameConstants f;
   f.light = light_basis(frame_texels);
-  f.light_lo = texel(frame_texels, 13u);
-  f.light_hi = texel(frame_texels, 14u);
-  f.first = texel(frame_texels, 15u);
-  f.step_u = texel(frame_texels, 16u);
-  f.step_v = texel(frame_texels, 17u);
-  f.cone = texel(frame_texels, 22u);
-  f.apex = texel(frame_texels, 23u);
-  f.front = texel(frame_texels, 24u);
-  f.pad = texel(frame_texels, 27u).x;
+  f.light_lo = texel(frame_texels, light_lo_texel);
+  f.light_hi = texel(frame_texels, light_hi_texel);
+  f.first = texel(frame_texels, first_texel);
+  f.step_u = texel(frame_texels, step_u_texel);
+  f.step_v = texel(frame_texels, step_v_texel);
+  f.cone = texel(frame_texels, cone_texel);
+  f.apex = texel(frame_texels, apex_texel);
+  f.front = texel(frame_texels, front_texel);
+  f.pad = texel(frame_texels, pad_texel).x;
   return f;
 }
 
