@@ -19,7 +19,7 @@ bool may_be_lit(vec3 point, vec3 normal, vec4 light, vec4 emission) {
          (emission.w <= -1.0 || dot(emission.xyz, -to_light) >= emission.w * length(to_light));
 }
 
-bool at_infinity(const FrameRef frame) { return frame.f.light.w < 0.5; }
+#define at_infinity(frame) ((frame).f.light.w == 0.0)
 
 // (u, v, depth) of q in a face.
 vec3 project(const Face face, bool parallel, vec3 q) {
