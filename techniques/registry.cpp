@@ -1,5 +1,6 @@
 #include "techniques/registry.h"
 
+#include "techniques/alias_free_shadow_map/alias_free_shadow_map.h"
 #include "techniques/gears/gears.h"
 #include "techniques/planar_shadow/planar_shadow.h"
 #include "techniques/ray_tracing/ray_tracing.h"
@@ -15,6 +16,7 @@ Registry all_techniques() {
       shadow_map_technique(),
       planar_shadow_technique(),
       stencil_shadow_volume_technique(),
+      alias_free_shadow_map_technique(),
       gears_technique(),
   };
 }
