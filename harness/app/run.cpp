@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "config/plan.h"
 #include "core/error.h"
+#include "gpu/device.h"
 #include "run/progress.h"
 #include "run/provenance.h"
 #include "run/schedule.h"
@@ -87,6 +88,7 @@ void run_command(const RunArguments& arguments, Context& context) {
     plan.points = run::shard(plan.points, index, count, costs);
   }
   if (arguments.dry_run) return print_plan(plan, costs);
+  gpu::require_device(context.device);  // before a folder is made for results that cannot come
   const run::RunOutcome outcome =
       run::run_plan(plan, run_options(arguments, context, plan), context.registry);
   after_run(outcome.folder, context, !outcome.interrupted);

@@ -100,6 +100,8 @@ int choose(const std::vector<DeviceInfo>& devices, std::string select) {
 
 }  // namespace
 
+void require_device(const std::string& select) { choose(list_devices(), select); }
+
 void Device::Impl::create_device() {
   family = queue_family(physical);
   const float priority = 1;

@@ -19,6 +19,9 @@ struct DeviceInfo {
 // All devices the loader finds; empty when there is no loader or driver (never throws).
 std::vector<DeviceInfo> list_devices();
 
+// Throws DeviceError unless `select` (as in DeviceOptions) names a usable device; opens nothing.
+void require_device(const std::string& select);
+
 struct Capabilities {
   uint32_t subgroup_size = 0;
   uint64_t max_storage_buffer_range = 0;

@@ -221,6 +221,7 @@ class Runs(Folder):
         result = penumbra("run", self.write("tiny.json", self.TINY), "--out", self.folder / "out",
                           env={"VK_ICD_FILENAMES": nowhere, "VK_DRIVER_FILES": nowhere})
         self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertFalse((self.folder / "out").exists())
 
 
 class Rendering(Folder):
