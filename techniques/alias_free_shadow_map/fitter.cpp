@@ -6,9 +6,6 @@ namespace penumbra::alias_free {
 namespace {
 
 constexpr float no_limit = 3e38F;
-// Faces overlap by this much, so that a view sample on the border between two is within the bounds of either.
-constexpr double face_tangent = 1.0001;
-
 }  // namespace
 
 const gpu::Buffer& segment_origins(const Params& params, const ViewSamples& view) {
@@ -26,7 +23,8 @@ const LightView& Fitter::run(const RenderInput& in, gpu::PassRecorder& passes) {
   const Case& c = *in.scene_case;
   const Box& scene = c.frame->geometry.bounds;
   diagonal_ = double(scene.diagonal());
-  view_ = begin_view(c.frame->light, scene);
+  light_ = light_point(c.frame->light);
+  view_ = begin_view(light_, scene);
   view_.grid_size = static_cast<uint32_t>(params_.grid_size);
   view_.both_faces = params_.casters == Casters::both;
   view_.leave_out_own = params_.origin == SegmentOrigin::exact;
@@ -49,7 +47,7 @@ void Fitter::fit_samples(const RenderInput& in, gpu::PassRecorder& passes) {
     none = box.empty();
     for (int i = 0; i < 3 && !none; ++i)
       view_.sample_lo[i] = static_cast<float>(box.lo[i]), view_.sample_hi[i] = static_cast<float>(box.hi[i]);
-    aim(view_, frame.light, none ? Vec3d{} : 0.5 * (box.lo + box.hi), frame.camera.basis().forward);
+    aim(view_, light_, none ? Vec3d{} : 0.5 * (box.lo + box.hi), frame.camera.basis().forward);
     if (none) set_window(view_, 0, {{0, 0, 0}, {1, 1, 1}}, diagonal_);
   });
   if (none) return;
@@ -77,7 +75,6 @@ void Fitter::cover(uint32_t face, const Extent& extent) {
 
 // No fitting: the windows cover the scene's bounds, or a spot's cone.
 void Fitter::fit_scene(const Case& c) {
-  const Light& light = c.frame->light;
   const Box& box = c.frame->geometry.bounds;
   // Offset origins may leave the bounds.
   const double offset = params_.origin == SegmentOrigin::exact ? 0 : 2 * double(relative_offset) * diagonal_;
@@ -88,12 +85,11 @@ void Fitter::fit_scene(const Case& c) {
     view_.sample_hi[i] = box.hi[i] + static_cast<float>(offset) - view_.center[i];
   }
   const Vec3d lo = Vec3d(box.lo) - out - center, hi = Vec3d(box.hi) + out - center;
-  aim(view_, light, 0.5 * (lo + hi), c.frame->camera.basis().forward);
-  const double cosine = double(view_.emission.w);
+  aim(view_, light_, 0.5 * (lo + hi), c.frame->camera.basis().forward);
   if (const auto whole = extent_of(view_, lo, hi)) {
     cover(0, *whole);
-  } else if (light.kind == LightKind::spot && cosine * widest_tangent > std::sqrt(1 - cosine * cosine)) {
-    const double tangent = face_tangent * std::sqrt(1 - cosine * cosine) / cosine;
+  } else if (light_.spot) {
+    const double tangent = face_tangent * light_.cone_tangent();
     cover(0, {{-tangent, -tangent, 0}, {tangent, tangent, 1}});
   } else {
     aim_cube(view_);

@@ -30,6 +30,7 @@ class Fitter {
   Params params_;
   gpu::ComputePipeline reduce_;
   gpu::Buffer view_buffer_, bounds_, read_back_;
+  LightPoint light_{};
   LightView view_{};
   double diagonal_ = 0;
   bool used_[most_faces] = {};

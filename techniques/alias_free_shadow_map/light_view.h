@@ -3,13 +3,10 @@
 #include <optional>
 
 #include "core/vec.h"
-#include "scene/light.h"
+#include "techniques/common/light_frame.h"
 #include "techniques/alias_free_shadow_map/shaders/shared.h"
 
 namespace penumbra::alias_free {
-
-// Widest |u| and |v| of one window; a light whose view samples need more gets six faces.
-inline constexpr double widest_tangent = 2;
 
 // Box of q, or bounds (u, v, depth) in a face.
 struct Extent {
@@ -20,12 +17,12 @@ struct Extent {
 };
 Extent decode(const SampleBounds& bounds);
 
-// Light, emission and centre; no faces yet. Area lights are seen from their centre. `scene`: the scene's bounds.
-LightView begin_view(const Light& light, const Box& scene);
+// Light, emission and centre; no faces yet. `scene`: the scene's bounds.
+LightView begin_view(const LightPoint& light, const Box& scene);
 
-// One face: directional and spot lights look along their axis, others along `towards` (relative to the centre).
+// One face: directional lights and narrow spots look along their axis, others along `towards` (relative to the centre).
 // `hint` becomes the face's v axis as far as it can.
-void aim(LightView& view, const Light& light, Vec3d towards, Vec3d hint);
+void aim(LightView& view, const LightPoint& light, Vec3d towards, Vec3d hint);
 // Six: the sides of a cube.
 void aim_cube(LightView& view);
 

@@ -9,8 +9,6 @@ namespace {
 
 constexpr uint32_t pixels_per_group = 64 * 16;  // as fit.comp
 constexpr double no_limit = 1e30;
-// Faces overlap by this much, so that a view sample on the border between two is in the bounds of both.
-constexpr double face_tangent = 1.0001;
 // Depth that a plane at right angles to the light still gets, to tell it from its casters: a share of the
 // diagonal.
 constexpr double least_depth_share = 1e-3;
@@ -82,9 +80,9 @@ bool Fitter::needs_sample_box() const {
   return may_need_faces(fitted_.light) || params_.cascades > 1 || params_.warp != Warp::none;
 }
 
-void Fitter::add_layer(Vec3d forward, Vec3d hint) {
+void Fitter::add_layer(const LightFrame& frame) {
   FittedLayer layer;
-  layer.frame = light_frame(forward, hint);
+  layer.frame = frame;
   layer.space_from_world = light_from_world(fitted_.light, layer.frame);
   fitted_.layers.push_back(layer);
 }
@@ -99,7 +97,7 @@ void Fitter::aim(const Case& c) {
   fitted_.splits = split_depths(params_.cascade_split, double(params_.cascade_lambda), params_.cascades,
                                 view_lo_, view_hi_);
   for (std::size_t i = 0; i + 1 < fitted_.splits.size(); ++i) {
-    add_layer(forward, tight ? c.frame->camera.basis().forward : fixed_hint);
+    add_layer(light_frame(forward, tight ? c.frame->camera.basis().forward : fixed_hint));
     FittedLayer& layer = fitted_.layers.back();
     if (i > 0) layer.view_lo = fitted_.splits[i];
     if (i + 2 < fitted_.splits.size()) layer.view_hi = fitted_.splits[i + 1];
@@ -115,12 +113,7 @@ void Fitter::aim(const Case& c) {
 void Fitter::aim_faces() {
   fitted_.six_faces = true, limit_ = face_tangent;
   fitted_.layers.clear();
-  for (int axis = 0; axis < 3; ++axis)
-    for (double sign : {1.0, -1.0}) {
-      Vec3d forward, hint;  // the cube's axes: only then do the faces meet
-      forward[axis] = sign, hint[(axis + 1) % 3] = 1;
-      add_layer(forward, hint);
-    }
+  for (int face = 0; face < 6; ++face) add_layer(cube_frame(face));
 }
 
 void Fitter::query(int slot, const Mat4d& space, double view_lo, double view_hi, double limit) {
@@ -260,8 +253,7 @@ void Fitter::fit_scene(const Case& c) {
     fitted_.layers[0].extent = *whole;
   } else {
     if (!fitted_.light.spot) aim_faces();
-    const double cosine = fitted_.light.cosine;
-    const double tangent = fitted_.six_faces ? face_tangent : std::sqrt(1 - cosine * cosine) / cosine;
+    const double tangent = fitted_.six_faces ? face_tangent : fitted_.light.cone_tangent();
     for (FittedLayer& layer : fitted_.layers) {
       // Depth clamp keeps what is nearer than the near plane.
       layer.extent.extend({-tangent, -tangent, -1 / (1e-3 * farthest)});

@@ -37,7 +37,7 @@ class Fitter {
   void fit_scene(const Case& c);
   void aim(const Case& c);  // frames and spaces of one map, or of cascades
   void aim_faces();         // of six faces
-  void add_layer(Vec3d forward, Vec3d hint);
+  void add_layer(const LightFrame& frame);
   bool needs_sample_box() const;
   void query(int slot, const Mat4d& space, double view_lo, double view_hi, double limit);
   void query_layers();

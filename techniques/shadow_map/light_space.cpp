@@ -1,8 +1,5 @@
 #include "techniques/shadow_map/light_space.h"
 
-#include <bit>
-#include <numbers>
-
 namespace penumbra::shadow_map {
 namespace {
 
@@ -20,9 +17,6 @@ Vec4f to_float4(Vec4d v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(v.w)};
 }
 
-// Undoes the order-preserving encoding of fit.comp.
-double decoded(uint u) { return std::bit_cast<float>(u & 0x80000000U ? u & 0x7fffffffU : ~u); }
-
 // Room on both sides: an extent without size (one sample, a plane seen edge-on) still gets a map.
 void pad(double& lo, double& hi, double relative, double least) {
   const double size = std::max({hi - lo, 1e-6 * std::max(std::abs(lo), std::abs(hi)), least});
@@ -35,41 +29,6 @@ double rounded_up(double size) { return std::exp2(std::ceil(4 * std::log2(size))
 
 }  // namespace
 
-Vec4f LightPoint::device_towards() const { return to_float4(towards); }
-Vec4f LightPoint::device_emission() const { return to_float4(row(axis, cosine)); }
-
-LightPoint light_point(const Light& light) {
-  const Vec3d direction = normalize(Vec3d(light.direction));
-  const Vec4d position = row(Vec3d(light.center), 1);
-  switch (light.kind) {
-    case LightKind::directional:
-      return {row(-direction, 0), direction, -1};
-    case LightKind::spot: {
-      const double cosine = std::cos(light.cone_degrees * std::numbers::pi / 180);
-      return {position, direction, cosine, cosine * widest_tangent > std::sqrt(1 - cosine * cosine)};
-    }
-    case LightKind::rectangle:
-    case LightKind::textured_rectangle:
-      return {position, direction, 0};
-    default:
-      return {position, direction, -1};
-  }
-}
-
-LightFrame light_frame(Vec3d forward, Vec3d hint) {
-  forward = normalize(forward);
-  Vec3d down = hint - forward * dot(hint, forward);
-  if (!(length(down) > 1e-6 * length(hint))) {
-    const Vec3d a{std::abs(forward.x), std::abs(forward.y), std::abs(forward.z)};
-    const Vec3d axis = a.x <= a.y && a.x <= a.z ? Vec3d{1, 0, 0}
-                       : a.y <= a.z             ? Vec3d{0, 1, 0}
-                                                : Vec3d{0, 0, 1};
-    down = axis - forward * dot(axis, forward);
-  }
-  down = normalize(down);
-  return {cross(down, forward), down, forward};
-}
-
 Mat4d light_from_world(const LightPoint& light, const LightFrame& frame) {
   const auto& [r, d, f] = frame;
   if (light.at_infinity()) return from_rows(row(r, 0), row(d, 0), row(f, 0), {0, 0, 0, 1});
@@ -81,8 +40,8 @@ Extent decode(const SampleBounds& b) {
   Extent e;
   e.whole = b.outside != 0;
   if (b.lo[0] == 0xffffffffU) return e;
-  for (int c = 0; c < 3; ++c) e.lo[c] = decoded(b.lo[c]), e.hi[c] = decoded(~b.hi[c]);
-  e.view_lo = decoded(b.lo[3]), e.view_hi = decoded(~b.hi[3]);
+  for (int c = 0; c < 3; ++c) e.lo[c] = from_ordered(b.lo[c]), e.hi[c] = from_ordered(~b.hi[c]);
+  e.view_lo = from_ordered(b.lo[3]), e.view_hi = from_ordered(~b.hi[3]);
   return e;
 }
 

@@ -6,33 +6,11 @@
 
 #include "core/vec.h"
 #include "scene/light.h"
+#include "techniques/common/light_frame.h"
 #include "techniques/shadow_map/params.h"
 #include "techniques/shadow_map/shaders/shared.h"
 
 namespace penumbra::shadow_map {
-
-// Widest |x/w| that one frustum takes before six faces are used: a full opening angle of 127 degrees.
-inline constexpr double widest_tangent = 2;
-
-// The light as a map sees it: one position or one direction.
-struct LightPoint {
-  Vec4d towards;      // position, 1; or the unit direction towards a light at infinity, 0
-  Vec3d axis;         // spot: the cone's axis; directional: the way light travels; rectangle: its front
-  double cosine;      // of the half angle about the axis in which light leaves; -1: everywhere
-  bool spot = false;  // the cone is narrow enough for one frustum about the axis (widest_tangent)
-  bool at_infinity() const { return towards.w == 0; }
-  Vec4f device_towards() const;
-  Vec4f device_emission() const;
-};
-// Area lights are seen from their centre.
-LightPoint light_point(const Light& light);
-
-// Right-handed: right x down = forward, so that what is drawn is not mirrored.
-struct LightFrame {
-  Vec3d right, down, forward;
-};
-// `hint` projected onto the map points along `down` (along any axis when it is parallel to `forward`).
-LightFrame light_frame(Vec3d forward, Vec3d hint);
 
 // World to light space. Directional: rigid, z = distance along the light, w = 1. Else w = distance along the
 // axis and z/w = -1/w, which any crop in z turns into the depth of a near and a far plane.

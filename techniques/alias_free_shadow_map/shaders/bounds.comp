@@ -8,12 +8,6 @@ layout(push_constant, scalar) uniform Push { BoundsPush push; };
 shared vec3 group_lo[group_lanes];
 shared vec3 group_hi[group_lanes];
 
-// Integers in the order of the floats.
-uint ordered(float f) {
-  const uint u = floatBitsToUint(f);
-  return (u & 0x80000000u) != 0u ? ~u : u | 0x80000000u;
-}
-
 void main() {
   const uint slot = push.face == most_faces ? 0u : push.face;
   const float infinity = uintBitsToFloat(0x7f800000u);

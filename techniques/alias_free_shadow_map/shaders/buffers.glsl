@@ -1,6 +1,8 @@
 // Buffers of the room, and the light as its kernels see it.
 #define PENUMBRA_COMPUTE
 #include "gpu/shaders/common.glsl"
+#include "techniques/common/shaders/light_emission.glsl"
+#include "techniques/common/shaders/ordered_float.glsl"
 layout(buffer_reference) buffer FrameRef;
 layout(buffer_reference) buffer BoundsArray;
 layout(buffer_reference) buffer ItemArray;
@@ -10,14 +12,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Fr
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer BoundsArray { SampleBounds at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer ItemArray { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ProgressRef { Progress p; };
-
-// Whether the light shines on the side of a surface that the viewer sees: above its horizon, in a spot's cone, before a
-// rectangle's front. Other view samples are in shadow without a test.
-bool may_be_lit(vec3 point, vec3 normal, vec4 light, vec4 emission) {
-  const vec3 to_light = light.xyz - light.w * point;
-  return dot(normal, to_light) > 0.0 &&
-         (emission.w <= -1.0 || dot(emission.xyz, -to_light) >= emission.w * length(to_light));
-}
 
 #define at_infinity(frame) ((frame).f.light.w == 0.0)
 

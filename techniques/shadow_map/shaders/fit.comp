@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define PENUMBRA_COMPUTE
+#include "techniques/common/shaders/ordered_float.glsl"
 #include "techniques/shadow_map/shaders/buffers.glsl"
 
 layout(local_size_x = SHADOW_MAP_GROUP) in;
@@ -10,12 +11,6 @@ layout(push_constant, scalar) uniform Push { FitPush push; };
 const uint samples_per_thread = 16;
 shared vec4 group_lo[SHADOW_MAP_GROUP];
 shared vec4 group_hi[SHADOW_MAP_GROUP];
-
-// Integers in the order of the floats.
-uint ordered(float f) {
-  const uint u = floatBitsToUint(f);
-  return (u & 0x80000000u) != 0 ? ~u : u | 0x80000000u;
-}
 
 void main() {
   const FitQuery query = push.query.at[push.slot];
