@@ -12,16 +12,6 @@ Vec4f four(Vec3d v, double w) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(w)};
 }
 
-// The nearest triangle along the ray and its t as a share of the ray's length.
-std::pair<uint32_t, double> nearest(const TriangleTree& tree, const Segment& ray) {
-  std::pair<uint32_t, double> best{no_triangle, INFINITY};
-  tree.visit(ray, 0, [&](uint32_t t) {
-    if (const auto at = meet(ray, tree.triangle(t)); at && *at < best.second) best = {t, *at};
-    return false;
-  });
-  return best;
-}
-
 Vec2f weights(const Triangle& t, Vec3d p) {
   const Vec3d n = cross(t[1] - t[0], t[2] - t[0]);
   const double area = dot(n, n);
@@ -50,7 +40,7 @@ HostView see(const Geometry& geometry, const Camera& camera, int width, int heig
       const double x = static_cast<double>(i % static_cast<std::size_t>(width)) + 0.5;
       const double y = static_cast<double>(i / static_cast<std::size_t>(width)) + 0.5;
       const Segment ray{eye, normalize(camera.ray_direction(x, y, width, height)) * reach};
-      const auto [hit, t] = nearest(tree, ray);
+      const auto [hit, t] = tree.nearest(ray);
       if (hit == no_triangle) continue;
       const Triangle& tri = tree.triangle(hit);
       Vec3d n = normalize(cross(tri[1] - tri[0], tri[2] - tri[0]));
@@ -105,6 +95,31 @@ void add_soup(Geometry& geometry, Vec3f lo, Vec3f hi, int count, float size, uin
     const Vec3f b = near(), c = near();
     add_triangle(geometry, a, b, c);
   }
+}
+
+Light point_light(Vec3f position) {
+  Light light;
+  light.kind = LightKind::point, light.center = position;
+  return light;
+}
+
+Light directional_light(Vec3f direction) {
+  Light light;
+  light.kind = LightKind::directional, light.direction = normalize(direction);
+  return light;
+}
+
+Light spot_light(Vec3f position, Vec3f target, float cone_degrees) {
+  Light light;
+  light.kind = LightKind::spot, light.center = position, light.direction = normalize(target - position);
+  light.cone_degrees = cone_degrees;
+  return light;
+}
+
+Camera camera_at(Vec3f eye, Vec3f target, float near_plane) {
+  Camera camera;
+  camera.eye = eye, camera.target = target, camera.near_plane = near_plane;
+  return camera;
 }
 
 Light rectangle_light(Vec3f center, Vec3f target, float width, float height) {

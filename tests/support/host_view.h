@@ -27,8 +27,13 @@ void add_ground(Geometry& geometry, float half, float height = 0);
 // `count` random triangles of about `size` inside the box.
 void add_soup(Geometry& geometry, Vec3f lo, Vec3f hi, int count, float size, uint32_t seed);
 
+Light point_light(Vec3f position);
+Light directional_light(Vec3f direction);
+// `cone_degrees`: half opening angle.
+Light spot_light(Vec3f position, Vec3f target, float cone_degrees);
 // A rectangle around `center` that faces `target`, with edges of the given lengths.
 Light rectangle_light(Vec3f center, Vec3f target, float width, float height);
+Camera camera_at(Vec3f eye, Vec3f target, float near_plane = 0.01f);
 // k x k cell centres, as LightSamples documents them; for tests that should not depend on harness/samples.
 LightSamples regular_samples(const Light& rectangle, int width, int height);
 // One sample: a point or spot light's centre, or the direction towards a directional light.

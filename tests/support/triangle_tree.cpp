@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "samples/view_samples.h"
+
 namespace penumbra::testing {
 
 TriangleTree::TriangleTree(const Geometry& geometry) {
@@ -44,6 +46,15 @@ void TriangleTree::split(uint32_t node, uint32_t begin, uint32_t end) {
   nodes_.resize(nodes_.size() + 2);
   split(child, begin, middle);
   split(child + 1, middle, end);
+}
+
+TriangleTree::Hit TriangleTree::nearest(const Segment& ray) const {
+  Hit best{no_triangle, INFINITY};
+  visit(ray, 0, [&](uint32_t t) {
+    if (const auto at = meet(ray, triangles_[t]); at && *at < best.t) best = {t, *at};
+    return false;
+  });
+  return best;
 }
 
 bool TriangleTree::near_box(const Segment& s, const Node& node, double radius) {

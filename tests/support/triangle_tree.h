@@ -15,6 +15,13 @@ class TriangleTree {
   const Triangle& triangle(uint32_t t) const { return triangles_[t]; }
   double diagonal() const { return diagonal_; }
 
+  // The first triangle along the segment, and its t as a share of the segment's length.
+  struct Hit {
+    uint32_t triangle;  // no_triangle: none
+    double t;
+  };
+  Hit nearest(const Segment& ray) const;
+
   // Calls visit(triangle index) for every triangle whose box comes within `radius` of the segment's points
   // (some more may be visited); stops when it returns true. Returns whether it was stopped.
   template <class F>

@@ -25,47 +25,18 @@ Frame box_over_ground(const Light& light) {
   testing::add_box(f.geometry, {-1, 0.5f, -1}, {1, 1.5f, 1});
   as_instance(f.geometry, 2, 1);
   f.light = light;
-  f.camera = camera({2, 4, 6}, {0, 0, 0});
+  f.camera = camera_at({2, 4, 6}, {0, 0, 0});
   return f;
 }
 
-struct Masked {
-  Rendered rendered;
-  std::vector<uint32_t> mask;
-};
-Masked render(Stage& stage, const ParamValues& given) {
-  const std::size_t words = static_cast<std::size_t>(stage.light_samples.mask_words());
-  const gpu::Buffer mask(device(), stage.pixels() * words * 4, gpu::Memory::device, "mask");
-  const std::unique_ptr<Technique> technique = Stage::make(info, given);
-  EXPECT_FALSE(technique->supports(stage.the_case).has_value());
-  technique->setup(stage.the_case, stage.passes), technique->build(stage.the_case, stage.passes);
-  RenderInput in;
-  in.scene_case = &stage.the_case, in.view_samples = &stage.view;
-  in.device.visibility = &stage.visibility, in.device.mask = &mask;
-  technique->render(in, stage.passes);
-  stage.passes.finish();
-  const uint64_t held = device().allocated_bytes();
-  technique->render(in, stage.passes);
-  Masked m;
-  m.rendered.visibility.resize(stage.pixels()), m.mask.resize(stage.pixels() * words);
-  gpu::download(stage.passes, "download", stage.visibility, m.rendered.visibility.data(), 4 * stage.pixels());
-  gpu::download(stage.passes, "download", mask, m.mask.data(), 4 * m.mask.size());
-  EXPECT_EQ(device().allocated_bytes(), held) << "the second frame allocates";
-  m.rendered.counters = technique->counters();
-  m.rendered.evaluated = technique->evaluated_mask();
-  return m;
-}
-
 // Bits on the plane that differ from Embree's; each must be a tie within 1/64 pixel in double precision.
-std::size_t differing_bits(Stage& stage, const Masked& m, std::size_t* compared) {
-  const MatchedReference truth =
-      ReferenceScene(stage.frame.geometry)
-          .matched(stage.view.host(), stage.frame.light, stage.light_samples, ReferenceOrigin::exact);
-  const std::size_t words = static_cast<std::size_t>(stage.light_samples.mask_words());
+std::size_t differing_bits(Stage& stage, const Rendered& m, std::size_t* compared) {
+  const MatchedReference& truth = stage.truth();
+  const std::size_t words = stage.mask_words();
   const ViewSamplesHost& view = stage.view.host();
   std::size_t off = 0;
   for (std::size_t i = 0; i < stage.pixels(); ++i) {
-    if (!truth.evaluated[i] || !m.rendered.evaluated[i]) continue;
+    if (!truth.evaluated[i] || !m.evaluated[i]) continue;
     for (std::size_t s = 0; s < static_cast<std::size_t>(stage.light_samples.count()); ++s) {
       const std::size_t word = i * words + s / 32;
       ++*compared;
@@ -86,27 +57,25 @@ std::size_t differing_bits(Stage& stage, const Masked& m, std::size_t* compared)
 TEST(PlanarShadow, DiffersFromTheReferenceOnThePlaneOnlyInTies) {
   std::vector<Light> lights{point_light({1.5f, 5, 1}), directional_light({-0.4f, -1, -0.3f}),
                             testing::rectangle_light({1, 5, 2}, {0, 0, 0}, 1.5f, 1)};
-  Light spot = point_light({1, 5, 2});
-  spot.kind = LightKind::spot, spot.direction = normalize(Vec3f{-1, -5, -2}), spot.cone_degrees = 25;
-  lights.push_back(spot);
+  lights.push_back(testing::spot_light({1, 5, 2}, {0, 0, 0}, 25));
   for (const Light& light : lights) {
     SCOPED_TRACE(to_string(light.kind));
     Stage stage(box_over_ground(light), 161, 119);
     LightSampleRequest request;
     request.width = 7, request.height = 5;  // more than a word, not a whole number of batches
     stage.light_samples = make_light_samples(light, request);
-    const Masked m = render(stage, {});
+    const Rendered m = stage.render(info, {});
     std::size_t compared = 0;
     const std::size_t off = differing_bits(stage, m, &compared);
     EXPECT_GT(compared, 5000U);
     EXPECT_LT(double(off), 0.002 * double(compared));
     for (std::size_t i = 0; i < stage.pixels(); ++i) {  // visibility is the share of clear bits
-      if (!m.rendered.evaluated[i]) continue;
-      const std::size_t words = static_cast<std::size_t>(stage.light_samples.mask_words());
+      if (!m.evaluated[i]) continue;
+      const std::size_t words = stage.mask_words();
       int blocked = 0;
       for (std::size_t w = 0; w < words; ++w) blocked += std::popcount(m.mask[i * words + w]);
       const double n = stage.light_samples.count();
-      EXPECT_NEAR(double{m.rendered.visibility[i]}, (n - blocked) / n, 1e-6);
+      EXPECT_NEAR(double{m.visibility[i]}, (n - blocked) / n, 1e-6);
     }
   }
 }
@@ -114,23 +83,36 @@ TEST(PlanarShadow, DiffersFromTheReferenceOnThePlaneOnlyInTies) {
 TEST(PlanarShadow, DiffersOnlyInTiesUnderAMesh) {
   Stage stage(Scene::load("torus_knot", {"configs/scenes"}).frame(0, "key", "front", -1), 128, 128);
   stage.light_samples = make_light_samples(stage.frame.light, {3, 3});
-  const Masked m = render(stage, {});
+  const Rendered m = stage.render(info, {});
   std::size_t compared = 0;
   const std::size_t off = differing_bits(stage, m, &compared);
   std::printf("[measured] torus knot: %zu of %zu bits differ\n", off, compared);
   EXPECT_LT(double(off), 1e-3 * double(compared));
 }
 
+TEST(PlanarShadow, SecondFrameAllocatesNothingAndGivesTheSameBits) {
+  Stage stage(box_over_ground(testing::rectangle_light({1, 5, 2}, {0, 0, 0}, 1.5f, 1)), 100, 60);
+  stage.light_samples = make_light_samples(stage.frame.light, {7, 5});
+  const std::unique_ptr<Technique> t = stage.built(info, {});
+  const Rendered first = stage.render(*t, true);
+  const uint64_t held = device().allocated_bytes();
+  EXPECT_GT(t->structure_bytes(), 0U);
+  stage.render_only(*t, true);
+  EXPECT_EQ(device().allocated_bytes(), held);
+  const Rendered second = stage.render(*t, true);
+  EXPECT_EQ(second.visibility, first.visibility);
+  EXPECT_EQ(second.mask, first.mask);
+}
+
 TEST(PlanarShadow, NothingFallsOffTheReceiver) {
   Stage stage(box_over_ground(point_light({1.5f, 5, 1})), 128, 96);
-  stage.light_samples = make_light_samples(stage.frame.light, {});
-  const Masked m = render(stage, {});
+  const Rendered m = stage.render(info, {});
   const ViewSamplesHost& view = stage.view.host();
   for (std::size_t i = 0; i < stage.pixels(); ++i) {
     const bool ground = view.triangle[i] != no_triangle && view.triangle[i] < 2;
-    EXPECT_EQ(m.rendered.evaluated[i] != 0, ground) << i;
+    EXPECT_EQ(m.evaluated[i] != 0, ground) << i;
     if (!ground) {
-      EXPECT_EQ(m.rendered.visibility[i], 1.0f) << i;
+      EXPECT_EQ(m.visibility[i], 1.0f) << i;
     }
   }
 }
@@ -140,8 +122,7 @@ TEST(PlanarShadow, OverlappingOccludersDarkenOnce) {
   for (float y : {1.0f, 1.3f}) testing::add_box(thrice.geometry, {-0.5f, y, -0.5f}, {0.5f, y + 0.1f, 0.5f});
   as_instance(thrice.geometry, 14, 1);
   Stage a(std::move(once), 128, 96), b(std::move(thrice), 128, 96);
-  a.light_samples = make_light_samples(a.frame.light, {}), b.light_samples = a.light_samples;
-  EXPECT_EQ(render(a, {}).rendered.visibility, render(b, {}).rendered.visibility);
+  EXPECT_EQ(a.render(info, {}).visibility, b.render(info, {}).visibility);
 }
 
 // What is beyond the light, or behind the plane, has an image in the projection but casts no shadow.
@@ -152,13 +133,12 @@ TEST(PlanarShadow, OccludersBeyondTheLightOrBehindThePlaneCastNothing) {
   testing::add_box(f.geometry, {-1, 4, -1}, {1, 5, 1});
   testing::add_box(f.geometry, {-1, -2, -1}, {1, -1, 1});
   as_instance(f.geometry, 2, 1);
-  f.light = point_light({0.2f, 3, 0.1f}), f.camera = camera({2, 2.5f, 6}, {0, 0, 0});
+  f.light = point_light({0.2f, 3, 0.1f}), f.camera = camera_at({2, 2.5f, 6}, {0, 0, 0});
   Stage stage(std::move(f), 128, 96);
-  stage.light_samples = make_light_samples(stage.frame.light, {});
-  const Masked m = render(stage, {});
+  const Rendered m = stage.render(info, {});
   for (std::size_t i = 0; i < stage.pixels(); ++i)
-    if (m.rendered.evaluated[i]) {
-      EXPECT_EQ(m.rendered.visibility[i], 1.0f) << i;
+    if (m.evaluated[i]) {
+      EXPECT_EQ(m.visibility[i], 1.0f) << i;
     }
 }
 
