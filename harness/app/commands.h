@@ -13,7 +13,7 @@ namespace penumbra {
 
 enum ExitCode : int {
   exit_done = 0,
-  exit_points_failed = 1,  // done, but points failed or timed out
+  exit_points_failed = 1,  // done, but points failed or timed out, or a comparison found something
   exit_bad_input = 2,      // nothing was run
   exit_no_device = 3,
   exit_cannot_write = 4,
@@ -52,6 +52,8 @@ void add_validate(CLI::App& app, Context& context);
 void add_metrics(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
+void add_compare(CLI::App& app, Context& context);
+void add_baseline(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 
 }  // namespace penumbra

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "compare/thresholds.h"
 #include "config/plan.h"
 #include "config/schema.h"
 #include "core/error.h"
@@ -71,7 +72,9 @@ void print_text(const TechniqueInfo& info) {
 
 void print_schema(const std::string& wanted, const Registry& registry) {
   std::vector<std::string> names;
-  for (const SchemaFile& file : schema_files(registry)) {
+  std::vector<SchemaFile> files = schema_files(registry);
+  files.push_back({"thresholds", compare::thresholds_schema()});
+  for (const SchemaFile& file : files) {
     if (file.name == wanted) return fmt::print("{}\n", file.schema.dump(2));
     names.push_back(file.name);
   }
@@ -90,7 +93,7 @@ void add_describe(CLI::App& app, Context& context) {
   sub->add_option("technique", options->technique, "Its name");
   sub->add_flag("--json", options->as_json, "As a JSON object");
   sub->add_option("--schema", options->schema,
-                  "Print the JSON Schema of sweep configs (sweep) or scene files (scene)");
+                  "Print the JSON Schema of sweep configs (sweep), scene files (scene) or thresholds of `compare` (thresholds)");
   sub->callback([options, &context] {
     if (!options->schema.empty()) return print_schema(options->schema, context.registry);
     if (options->technique.empty())

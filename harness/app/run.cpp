@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 struct RunArguments {
   std::string config, out, filter, shard;
   std::vector<std::string> set;
-  bool resume = false, dry_run = false, no_images = false, quiet = false;
+  bool resume = false, dry_run = false, no_images = false, no_report = false, quiet = false;
 };
 
 // "2/8" -> {2, 8}.
@@ -91,7 +91,7 @@ void run_command(const RunArguments& arguments, Context& context) {
   gpu::require_device(context.device);  // before a folder is made for results that cannot come
   const run::RunOutcome outcome =
       run::run_plan(plan, run_options(arguments, context, plan), context.registry);
-  after_run(outcome.folder, context, !outcome.interrupted);
+  after_run(outcome.folder, context, !outcome.interrupted && !arguments.no_report);
   fmt::print("{}\n", summary(outcome));
   context.exit_code = exit_code(outcome);
 }
@@ -112,6 +112,7 @@ void add_run(CLI::App& app, Context& context) {
   sub->add_flag("--resume", arguments->resume, "Run only what is missing, failed, or out of date in --out");
   sub->add_flag("--dry-run", arguments->dry_run, "Print the plan and do nothing");
   sub->add_flag("--no-images", arguments->no_images, "Write no images, whatever the config asks for");
+  sub->add_flag("--no-report", arguments->no_report, "Make neither plots nor report");
   sub->add_flag("--quiet", arguments->quiet, "No progress");
   sub->callback([arguments, &context] { run_command(*arguments, context); });
 

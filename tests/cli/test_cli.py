@@ -275,7 +275,7 @@ class Metrics(Folder):
 
 
 class Schemas(Folder):
-    NAMES = ("sweep", "scene")
+    NAMES = ("sweep", "scene", "thresholds")
 
     def schema(self, name):
         return json.loads(self.accepted("describe", "--schema", name))
