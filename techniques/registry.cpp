@@ -1,6 +1,7 @@
 #include "techniques/registry.h"
 
 #include "techniques/alias_free_shadow_map/alias_free_shadow_map.h"
+#include "techniques/depth_complexity_sampling/depth_complexity_sampling.h"
 #include "techniques/gears/gears.h"
 #include "techniques/planar_shadow/planar_shadow.h"
 #include "techniques/ray_tracing/ray_tracing.h"
@@ -18,6 +19,7 @@ Registry all_techniques() {
       stencil_shadow_volume_technique(),
       alias_free_shadow_map_technique(),
       gears_technique(),
+      depth_complexity_sampling_technique(),
   };
 }
 

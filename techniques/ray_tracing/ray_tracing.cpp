@@ -1,14 +1,14 @@
 #include "techniques/ray_tracing/ray_tracing.h"
 
-#include "techniques/ray_tracing/hierarchy.h"
+#include "techniques/common/embree_hierarchy.h"
 #include "techniques/ray_tracing/params.h"
 #include "techniques/ray_tracing/tracer.h"
 
 namespace penumbra {
 namespace {
 
-using ray_tracing::Hierarchy;
-using ray_tracing::Quality;
+using Hierarchy = EmbreeHierarchy;
+using Quality = HierarchyQuality;
 using ray_tracing::trace_settings;
 using ray_tracing::Tracer;
 using ray_tracing::TraceSettings;

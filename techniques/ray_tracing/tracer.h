@@ -17,7 +17,7 @@ struct TraceSettings {
 };
 
 // What the room's parameters mean for a scene of so many triangles, a set of so many light samples, and a
-// processor whose vectors hold `native_packet` rays (Hierarchy::native_packet).
+// processor whose vectors hold `native_packet` rays (EmbreeHierarchy::native_packet).
 TraceSettings trace_settings(const RayTracingParams& params, std::size_t triangles, int light_samples,
                              int native_packet);
 

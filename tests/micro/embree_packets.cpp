@@ -17,7 +17,7 @@
 #include "core/parallel.h"
 #include "embree/embree.h"
 #include "embree/flush_denormals.h"
-#include "techniques/ray_tracing/hierarchy.h"
+#include "techniques/common/embree_hierarchy.h"
 #include "techniques/ray_tracing/tracer.h"
 #include "tests/support/host_view.h"
 
@@ -43,7 +43,7 @@ struct Study {
   std::string name;
   Frame frame;
   testing::HostView view;
-  ray_tracing::Hierarchy hierarchy{ray_tracing::Quality::high, false, false};
+  EmbreeHierarchy hierarchy{HierarchyQuality::high, false, false};
   std::map<int, std::vector<uint32_t>> evaluated;  // by k: pixels with a ray to trace
   std::map<int, LightSamples> samples;
   std::map<int, uint64_t> rays;

@@ -5,7 +5,7 @@
 #include <bit>
 #include <memory>
 
-#include "techniques/ray_tracing/hierarchy.h"
+#include "techniques/common/embree_hierarchy.h"
 #include "techniques/ray_tracing/tracer.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/analytic.h"
@@ -15,6 +15,8 @@
 namespace penumbra::ray_tracing {
 namespace {
 
+using Hierarchy = EmbreeHierarchy;
+using Quality = HierarchyQuality;
 using testing::BruteForce;
 using testing::Differences;
 using testing::HostView;

@@ -6,16 +6,16 @@
 #include "embree/embree.h"
 #include "scene/scene.h"
 
-namespace penumbra::ray_tracing {
+namespace penumbra {
 
-enum class Quality { low, medium, high, refit };
+enum class HierarchyQuality { low, medium, high, refit };
 
-class Hierarchy {
+class EmbreeHierarchy {
  public:
-  Hierarchy(Quality quality, bool dynamic, bool robust);
-  ~Hierarchy();
-  Hierarchy(const Hierarchy&) = delete;
-  Hierarchy& operator=(const Hierarchy&) = delete;
+  EmbreeHierarchy(HierarchyQuality quality, bool dynamic, bool robust);
+  ~EmbreeHierarchy();
+  EmbreeHierarchy(const EmbreeHierarchy&) = delete;
+  EmbreeHierarchy& operator=(const EmbreeHierarchy&) = delete;
 
   // New topology: replaces what was there. Throws PointError when Embree is out of memory.
   void load(const Geometry& geometry);
@@ -35,7 +35,7 @@ class Hierarchy {
  private:
   void check() const;
 
-  Quality quality_;
+  HierarchyQuality quality_;
   std::atomic<int64_t> bytes_{0};
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
@@ -44,4 +44,4 @@ class Hierarchy {
   std::size_t vertex_count_ = 0, triangle_count_ = 0;
 };
 
-}  // namespace penumbra::ray_tracing
+}  // namespace penumbra

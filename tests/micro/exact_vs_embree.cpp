@@ -1,0 +1,209 @@
+// depth_complexity_sampling, all its per-frame stages, against Embree's fastest packets in one run, on the
+// study's scenes, and what each stage takes:
+//   micro_exact_vs_embree [SCENE ...] [k=16,32] [resolution=512] [light_size=D] [dynamic=true] [soup=true]
+//   [quick=true]
+//   [--benchmark_repetitions=5] [--benchmark_enable_random_interleaving=true]
+// Scenes are names under configs/scenes (the study_* scenes that are there by default). The opponent is
+// ray_tracing, not robust, with packets of 8 and 16 rays and both coherence hints (dynamic: with its own
+// choice of packet, at its low, medium and refitted build qualities): the fastest counts. light_size: the
+// rectangle's diagonal. dynamic: both sides take the vertices anew each frame, and building counts. soup:
+// each triangle shrunk by a thousandth, so that every edge is open. quick: one opponent, ray_tracing as it
+// chooses for itself. The table ends with the ratio of the medians.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+#include "core/error.h"
+#include "techniques/registry.h"
+#include "tests/techniques/depth_complexity_render.h"
+
+namespace penumbra {
+namespace {
+
+using testing::DeviceScene;
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::vector<int> k = {16, 32};
+  int resolution = 512;
+  float light_size = -1;
+  bool dynamic = false, soup = false, quick = false;
+};
+
+// A technique that runs on the host, with what its passes took since the last call.
+struct HostRun {
+  DeviceScene& scene;
+  std::unique_ptr<Technique> technique;
+  std::vector<float> visibility;
+  std::vector<uint32_t> mask;
+  std::map<std::string, double> passes;
+
+  HostRun(DeviceScene& scene_, const std::string& name, const ParamValues& given) : scene(scene_) {
+    const Registry registry = all_techniques();
+    const TechniqueInfo& info = find_technique(registry, name);
+    technique = info.make(resolve(info.params, given, name));
+    visibility.resize(scene.view->host().pixel_count());
+    mask.resize(visibility.size() * static_cast<std::size_t>(scene.samples.mask_words()));
+    build();
+    taken();
+  }
+  void build() { technique->build(scene.scene_case, scene.passes); }
+  void render() {
+    RenderInput in;
+    in.scene_case = &scene.scene_case, in.view_samples = scene.view.get(), in.host = {visibility, mask};
+    technique->render(in, scene.passes);
+  }
+  double taken() {
+    double ms = 0;
+    for (const gpu::PassTime& p : scene.passes.take_times()) ms += p.ms, passes[p.name] += p.ms;
+    return ms;
+  }
+};
+
+void measure(benchmark::State& state, HostRun& run, bool dynamic) {
+  run.render();
+  run.taken();
+  run.passes.clear();
+  for ([[maybe_unused]] auto _ : state) {
+    if (dynamic) run.build();
+    run.render();
+    state.SetIterationTime(run.taken() / 1000);
+  }
+  for (const auto& [name, ms] : run.passes)
+    state.counters[name] = benchmark::Counter(ms, benchmark::Counter::kAvgIterations);
+}
+
+// Everything for one scene and mask size, made on first use: the dragons are large.
+struct Contest {
+  std::unique_ptr<DeviceScene> scene;
+  std::map<std::string, std::unique_ptr<HostRun>> runs;
+};
+
+std::unique_ptr<DeviceScene> load(gpu::Device& device, const Options& options, const std::string& name,
+                                  int k) {
+  Frame frame = Scene::load(name, {"configs/scenes"}).frame(0, "", "", options.light_size);
+  if (options.soup) testing::make_soup(frame.geometry, 1e-3F);
+  return std::make_unique<DeviceScene>(device, std::move(frame), options.resolution, options.resolution,
+                                       LightSampleRequest{k, k});
+}
+
+void add(gpu::Device& device, const Options& options, const std::string& name, int k, Contest& contest) {
+  const auto add_one = [&](const std::string& label, const std::string& technique,
+                           const ParamValues& params) {
+    const auto run = [=, &device, &options, &contest](benchmark::State& s) {
+      if (!contest.scene) contest.scene = load(device, options, name, k);
+      auto& r = contest.runs[label];
+      if (!r) r = std::make_unique<HostRun>(*contest.scene, technique, params);
+      measure(s, *r, options.dynamic);
+    };
+    benchmark::RegisterBenchmark(fmt::format("{}/k:{}/{}", name, k, label).c_str(), run)
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
+  };
+  if (options.dynamic)
+    for (const std::string quality : {"low", "medium", "refit"})
+      add_one("embree_" + quality, "ray_tracing", {{"dynamic", true}, {"build_quality", quality}});
+  else if (options.quick)
+    add_one("embree", "ray_tracing", {});
+  else
+    for (const std::string packet : {"8", "16"})
+      for (const std::string coherent : {"on", "off"})
+        add_one("embree_" + packet + "_coherent_" + coherent, "ray_tracing",
+                {{"packet", packet}, {"coherent", coherent}});
+  add_one("depth_complexity_sampling", "depth_complexity_sampling", {{"dynamic", options.dynamic}});
+}
+
+// Prints as usual, and keeps the times for the closing ratios.
+class Ratios : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs)
+      if (run.run_type == Run::RT_Iteration)
+        times_[run.run_name.function_name].push_back(run.GetAdjustedRealTime());
+    ConsoleReporter::ReportRuns(runs);
+  }
+  void Finalize() override {
+    struct Best {
+      double embree = INFINITY, ours = INFINITY;
+    };
+    std::map<std::string, Best> best;  // by scene and k
+    for (auto& [name, times] : times_) {
+      std::ranges::sort(times);
+      const std::size_t slash = name.rfind('/');
+      Best& b = best[name.substr(0, slash)];
+      double& slot = name.compare(slash + 1, 6, "embree") == 0 ? b.embree : b.ours;
+      slot = std::min(slot, times[times.size() / 2]);
+    }
+    for (const auto& [name, b] : best)
+      fmt::print("{}: embree {:.0f} ms, depth complexity sampling {:.1f} ms: {:.2f} times as fast\n", name,
+                 b.embree, b.ours, b.embree / b.ours);
+  }
+
+ private:
+  std::map<std::string, std::vector<double>> times_;
+};
+
+Options read(int argc, char** argv) {
+  Options o;
+  for (int i = 1; i < argc; ++i) {
+    const std::string arg = argv[i];
+    const std::size_t equals = arg.find('=');
+    const std::string key = arg.substr(0, equals),
+                      value = equals == std::string::npos ? "" : arg.substr(equals + 1);
+    if (equals == std::string::npos) {
+      o.scenes.push_back(arg);
+    } else if (key == "k") {
+      o.k.clear();
+      std::istringstream list(value);
+      for (std::string one; std::getline(list, one, ',');) o.k.push_back(std::stoi(one));
+    } else if (key == "resolution") {
+      o.resolution = std::stoi(value);
+    } else if (key == "light_size") {
+      o.light_size = std::stof(value);
+    } else if (key == "dynamic") {
+      o.dynamic = value == "true";
+    } else if (key == "soup") {
+      o.soup = value == "true";
+    } else if (key == "quick") {
+      o.quick = value == "true";
+    } else {
+      throw InputError("Unknown option '" + key + "'." +
+                       suggestion(key, {"k", "resolution", "light_size", "dynamic", "soup", "quick"}));
+    }
+  }
+  if (o.scenes.empty())
+    o.scenes = {"study_city", "study_dragon4", "study_dragon3", "study_knots",  "study_bunny",
+                "study_nest", "study_dragon2", "study_hair",    "study_dragon1"};
+  return o;
+}
+
+}  // namespace
+}  // namespace penumbra
+
+int main(int argc, char** argv) {
+  using namespace penumbra;
+  benchmark::Initialize(&argc, argv);
+  try {
+    const Options options = read(argc, argv);
+    gpu::Device device{gpu::DeviceOptions{}};
+    std::map<std::string, Contest> contests;
+    for (const std::string& name : options.scenes) {
+      try {
+        Scene::load(name, {"configs/scenes"});
+      } catch (const InputError& e) {
+        fmt::print(stderr, "left out: {}\n", e.what());
+        continue;
+      }
+      for (const int k : options.k) add(device, options, name, k, contests[fmt::format("{}/{}", name, k)]);
+    }
+    Ratios reporter;
+    benchmark::RunSpecifiedBenchmarks(&reporter);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+    return 2;
+  }
+  return 0;
+}
