@@ -7,6 +7,12 @@
 #include "shaders/gears_walk_tree_grid.h"
 
 namespace penumbra::gears {
+namespace {
+
+// Room to go on with so many groups, of which some go on as two; what finds no room goes on whole.
+uint32_t resume_capacity(uint32_t groups) { return groups + groups / 2 + 1024; }
+
+}  // namespace
 
 void Clusters::setup(FrameState& state) {
   gpu::Device& device = *state.device;
@@ -60,8 +66,8 @@ void Clusters::group(FrameState& state, gpu::PassRecorder& passes) {
   const uint32_t capacity = groups_.capacity(state.width, state.height);
   gpu::ensure(state.slots, *state.device, std::size_t{capacity} * state.lanes * 4, gpu::Memory::device,
               "groups of view samples");
-  gpu::ensure(state.resume, *state.device, std::size_t{capacity} * 3 * 4, gpu::Memory::device,
-              "groups to go on with");
+  gpu::ensure(state.resume, *state.device, std::size_t{resume_capacity(capacity)} * 6 * 4,
+              gpu::Memory::device, "groups to go on with");
   SampleGroups::Input input;
   input.slots = state.slots.address();
   input.group_count = state.header.address();
@@ -83,6 +89,8 @@ void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder&
   pc.resume = state.resume.address();
   pc.header = state.header.address();
   pc.groups = group_count_;
+  pc.capacity = resume_capacity(groups_.capacity(state.width, state.height));
+  pc.split_turns = static_cast<uint32_t>(std::min(state.params.split_turns, state.params.dispatch_turns));
   pc.first_leaf = order_.first_leaf;
   walks_ = walker_.run(
       state, passes, "walk", group_count_, list_count_, true, statistics,

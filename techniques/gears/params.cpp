@@ -36,6 +36,10 @@ const ParamTable<GearsParams>& gears_params() {
     t.integer("dispatch_turns", &P::dispatch_turns, 64, 20000,
               {"loop turns", "",
                "Work of a group in one dispatch; then it writes down where it is and goes on in the next."});
+    t.integer("split_turns", &P::split_turns, 64, 20000,
+              {"loop turns", "",
+               "Work after which a group of view samples goes on as two, cut where they lie farthest apart "
+               "(assignment=clusters)."});
     t.number("depth_weight", &P::depth_weight, 0.0, 4.0,
              {"", "",
               "Weight of the distance to the light, against that across, where view samples are grouped."});

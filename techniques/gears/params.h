@@ -18,6 +18,7 @@ struct GearsParams {
   int list_budget_mib = 256;
   int leaf_batch = 8;
   int dispatch_turns = 20000;
+  int split_turns = 8000;
   float depth_weight = 1.0f;
 };
 

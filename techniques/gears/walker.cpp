@@ -10,6 +10,9 @@ namespace {
 // walk.glsl.
 constexpr uint32_t turns_between_looks = 30000;
 
+// Words of the mask that one turn of the row loop fills: two rows, where a row takes 32 bits or more.
+uint32_t band_words(const MaskLayout& m) { return m.pitch == 64 ? 4 : m.pitch == 32 ? 2 : 1; }
+
 }  // namespace
 
 // Loop turns that rasterising one triangle can take.
@@ -60,7 +63,8 @@ const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Vari
                                                 {12, v.walk},
                                                 {13, state.walk_resolves() ? u(m.samples) : 0}};
   if (m.grid) {
-    constants.insert(constants.end(), {{1, u(m.columns)}, {2, u(m.rows)}, {3, u(m.pitch)}});
+    constants.insert(constants.end(),
+                     {{1, u(m.columns)}, {2, u(m.rows)}, {3, u(m.pitch)}, {14, band_words(m)}});
   } else {
     constants.insert(constants.end(), {{1, u(m.samples)}, {5, m.infinite}});
   }

@@ -33,11 +33,13 @@ struct WalkTreeConstants {
   PENUMBRA_ADDRESS(Uints) slots;  // pixel of each slot, SG per group
   PENUMBRA_ADDRESS(Uints) masks;  // WORDS per pixel
   PENUMBRA_ADDRESS(Uints) list;  // slots outside the tree
-  PENUMBRA_ADDRESS(Uints) resume;  // lists of groups to go on with: two of `groups`, then the next leaf of each group
+  PENUMBRA_ADDRESS(Uints) resume;  // two lists of what to go on with, `capacity` each: group, lanes, next leaf
   PENUMBRA_ADDRESS(HeaderRef) header;
   PENUMBRA_UINT groups, work_groups, first_leaf;
   PENUMBRA_UINT list_begin, list_end;  // part of the list for this dispatch
   PENUMBRA_UINT read_list;  // which of the two resume lists is read; the other is written
+  PENUMBRA_UINT capacity;  // at least `groups`
+  PENUMBRA_UINT split_turns;  // loop turns after which a group goes on as two
 };
 
 struct WalkCellsConstants {

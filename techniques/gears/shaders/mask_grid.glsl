@@ -5,7 +5,9 @@ layout(constant_id = 1) const int COLUMNS = 16;
 layout(constant_id = 2) const int ROWS = 16;
 layout(constant_id = 3) const int PITCH = 16;
 layout(constant_id = 4) const int WORDS = 8;
+layout(constant_id = 14) const int BAND_WORDS = 1;   // words of the mask that one turn of the row loop fills
 const int ROWS_PER_WORD = PITCH >= 32 ? 1 : 32 / PITCH;
+const int BAND_ROWS = PITCH > 32 ? BAND_WORDS / 2 : BAND_WORDS * ROWS_PER_WORD;
 const float far_away = 1e30;
 
 vec3 p;                     // view sample
@@ -18,15 +20,15 @@ float pad;
 // Bits below n, 0 <= n <= 32.
 uint below(int n) { return PITCH < 32 ? (1u << n) - 1u : (n >= 32 ? 0xffffffffu : (1u << n) - 1u); }
 
-// Bits of the columns in [lo, hi] for word `part` of a row.
+// Bits of the columns in [lo, hi] for word `part` of a row; 0 <= lo <= PITCH, -1 <= hi < PITCH. Truncation instead of
+// floor and ceiling: the sums are exact at integers and monotone, so that no column on a bound is lost.
 uint span(float lo, float hi, int part) {
-  const int width = PITCH > 32 ? 32 : PITCH;
-  int a = int(ceil(lo)), b = int(floor(hi)) + 1;
+  int past = int(hi + 1.0), from_end = int(float(PITCH) - lo);   // columns up to hi; columns from lo on
   if (PITCH > 32) {
-    a = clamp(a - 32 * part, 0, width);
-    b = clamp(b - 32 * part, 0, width);
+    past = clamp(past - 32 * part, 0, 32);
+    return below(past) & ~below(clamp(PITCH - from_end - 32 * part, 0, 32));
   }
-  return below(b) & ~below(a);
+  return below(past) & ~(PITCH == 32 && from_end >= 32 ? 0u : below(PITCH) >> from_end);
 }
 
 // Light samples that a view sample at P with normal n does not face, or that face away from it, are blocked.
@@ -174,36 +176,47 @@ uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) 
   }
   float c0 = float(rect & 255u), c1 = float((rect >> 8) & 255u);
   int j0 = int((rect >> 16) & 255u), j1 = int(rect >> 24);
-  int q = j0 / ROWS_PER_WORD, last = j1 / ROWS_PER_WORD;
+  // Rows outside [j0, j1] that share a word with rows inside.
+  int first_word = j0 / ROWS_PER_WORD, last_word = j1 / ROWS_PER_WORD;
+  uint before = (0xffffffffu << ((j0 - first_word * ROWS_PER_WORD) * PITCH)), after = 0xffffffffu >> ((ROWS_PER_WORD - 1 - (j1 - last_word * ROWS_PER_WORD)) * PITCH);
+  int band = j0 / BAND_ROWS, last = j1 / BAND_ROWS;
   uint found = 0u;
+  turns += uint(last - band + 1);
   do {
-    uint w = 0u, w_high = 0u;
-    [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
-      float j = float(q * ROWS_PER_WORD + r);
-      float x0 = upper(fma(lo_slope, vec3(j), lo_offset)), x1 = lower(fma(hi_slope, vec3(j), hi_offset));
+    uint w[BAND_WORDS];
+    float top = float(band * BAND_ROWS);
+    [[unroll]] for (int k = 0; k < BAND_WORDS; k++) w[k] = 0u;
+    [[unroll]] for (int r = 0; r < BAND_ROWS; r++) {
+      float j = top + float(r);
+      float x0 = upper(lo_slope * j + lo_offset), x1 = lower(hi_slope * j + hi_offset);
       if (crossing) {
-        x0 = upper(x0, fma(lo4_slope, j, lo4));
-        x1 = lower(x1, fma(hi4_slope, j, hi4));
+        x0 = upper(x0, lo4_slope * j + lo4);
+        x1 = lower(x1, hi4_slope * j + hi4);
       }
       x0 = lower(upper(x0, c0), float(PITCH));
       x1 = upper(lower(x1, c1), -1.0);
-      uint bits = span(x0, x1, 0);
-      if (PITCH > 32) w_high = span(x0, x1, 1);
-      w |= PITCH >= 32 ? bits : bits << (r * PITCH);
+      if (PITCH > 32) {
+        w[2 * r] = span(x0, x1, 0);
+        w[2 * r + 1] = span(x0, x1, 1);
+      } else {
+        w[r / ROWS_PER_WORD] |= span(x0, x1, 0) << ((r % ROWS_PER_WORD) * PITCH);
+      }
     }
-    if (ROWS_PER_WORD > 1) {
-      int from = max(j0 - q * ROWS_PER_WORD, 0) * PITCH, past = 32 - min(j1 + 1 - q * ROWS_PER_WORD, ROWS_PER_WORD) * PITCH;
-      w &= (0xffffffffu << from) & (0xffffffffu >> past);
+    [[unroll]] for (int k = 0; k < BAND_WORDS; k++) {
+      if (ROWS_PER_WORD > 1) {
+        int word = band * BAND_WORDS + k;
+        if (BAND_WORDS > 1) w[k] = word < first_word || word > last_word ? 0u : w[k];
+        w[k] &= word == first_word ? before : 0xffffffffu;
+        w[k] &= word == last_word ? after : 0xffffffffu;
+      } else {
+        int row = PITCH > 32 ? band * BAND_ROWS + k / 2 : band * BAND_ROWS + k;
+        w[k] = row < j0 || row > j1 ? 0u : w[k];
+      }
+      if (counting) found += uint(bitCount(w[k]));
     }
-    if (PITCH > 32) {
-      mask[2 * q] |= w;
-      mask[2 * q + 1] |= w_high;
-    } else {
-      mask[q] |= w;
-    }
-    if (counting) found += uint(bitCount(w) + bitCount(w_high));
-    q++;
-    turns++;
-  } while (q <= last);
+    // Constant places and a comparison, not mask[band]: a place that varies costs a scalar load and store per lane.
+    [[unroll]] for (int q = 0; q < WORDS; q++) mask[q] |= band == q / BAND_WORDS ? w[q % BAND_WORDS] : 0u;
+    band++;
+  } while (band <= last);
   return found;
 }

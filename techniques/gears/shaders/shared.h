@@ -42,10 +42,11 @@ const PENUMBRA_UINT light_lo_texel = 13, light_hi_texel = 14, first_texel = 15, 
 struct Header {
   PENUMBRA_UINT group_count;            // groups of view samples
   PENUMBRA_UINT list_count;             // triangles outside the tree or the cells
-  PENUMBRA_UINT resume_count;           // groups that have to go on in another dispatch
+  PENUMBRA_UINT resume_count;           // groups, or parts of them, that have to go on in another dispatch
   PENUMBRA_UINT large_count;            // triangles that touch many cells
   PENUMBRA_UINT farthest;               // float bits: largest z of a view sample before the grid camera
-  PENUMBRA_UINT padding[3];
+  PENUMBRA_UINT split_count;            // groups that went on as two
+  PENUMBRA_UINT padding[2];
   // Statistics, low and high words: nodes and leaves visited, pairs (triangle, view sample) rasterised, pairs whose
   // triangle covers at least one light sample.
   PENUMBRA_UINT nodes[2], leaves[2], pairs[2], necessary[2];

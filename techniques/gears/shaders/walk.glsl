@@ -40,6 +40,7 @@ FrameConstants frame_constants() {
   return f;
 }
 
+const uint every_lane = SG < 32u ? (1u << SG) - 1u : 0xffffffffu;
 uint turns = 0u;
 vec3 sample_origin;
 uint pairs = 0u, necessary = 0u, nodes = 0u, leaves = 0u;
@@ -53,10 +54,13 @@ uint pairs = 0u, necessary = 0u, nodes = 0u, leaves = 0u;
 uint pixel;
 bool idle;
 
-void begin_group(uint g, FrameConstants f, Uints slots, Vec4s samples) {
+// `lanes`: a bit for each view sample of the group that takes part; those without one stand in for the first.
+void begin_group(uint g, uint lanes, FrameConstants f, Uints slots, Vec4s samples) {
   pixel = slots.at[g * SG + gl_SubgroupInvocationID];
-  idle = pixel == no_sample;
-  pixel = idle ? subgroupShuffle(pixel, 0u) : pixel;   // the first slot of a group always holds one
+  idle = pixel == no_sample || (lanes >> gl_SubgroupInvocationID & 1u) == 0u;
+  // The first slots of a group hold samples. Shuffled by all lanes: in a branch, lane `first` would not take part.
+  uint of_first = subgroupShuffle(pixel, uint(findLSB(lanes)));
+  pixel = idle ? of_first : pixel;
   p = to_working(f.light, texel(origin_texels, pixel).xyz);
   pad = f.pad;
 #ifdef GRID

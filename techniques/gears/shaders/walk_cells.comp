@@ -29,7 +29,7 @@ void main() {
   if (n >= pc.work_groups) return;
   uint g = RESUMED ? pc.resume.at[pc.read_list * pc.groups + n] : pc.first_group + n;
   FrameConstants f = frame_constants();
-  begin_group(g, f, pc.slots, pc.light_samples);
+  begin_group(g, every_lane, f, pc.slots, pc.light_samples);
   if (BEGIN)
     block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
   else

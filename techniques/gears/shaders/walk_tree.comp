@@ -29,8 +29,8 @@ uint last_leaf_below(uint node) {
   return node - pc.first_leaf;
 }
 
-// Walks on from leaf `start`; returns where to go on, or 0xffffffff when done.
-uint walk(uint start) {
+// Walks on from leaf `start` until `limit` loop turns; returns where to go on, or 0xffffffff when done.
+uint walk(uint start, uint limit) {
   uint first_child[DEPTH], pending[DEPTH];              // per level: a bit for each child to visit
   uint leaf_first[LEAF_BATCH + 1u], leaf_mask[LEAF_BATCH + 1u];   // leaves to rasterise: a bit per child
   uint node = 0u;
@@ -65,7 +65,7 @@ uint walk(uint start) {
       top -= more && bits == 0u ? 1 : 0;
       turns++;
       if (COUNTING != 0u) nodes++;
-    } while (more && found < LEAF_BATCH && turns < TURN_LIMIT);
+    } while (more && found < LEAF_BATCH && turns < limit);
 
     bool full = false;
     if (found > 0u) {
@@ -84,17 +84,59 @@ uint walk(uint start) {
     }
     more = more && !full;
     if (COUNTING != 2u && more) update_open();
-  } while (more && turns < TURN_LIMIT);
+  } while (more && turns < limit);
   return more ? first_leaf_below(node) : 0xffffffffu;
+}
+
+// Those of `lanes` beyond the widest gap along the longest axis of their view samples; 0 where all are in one place.
+uint beyond_gap(uint lanes) {
+  vec3 extent = group_hi - group_lo;
+  bool x = extent.x >= extent.y && extent.x >= extent.z, y = !x && extent.y >= extent.z;
+  float mine = x ? p.x : y ? p.y : p.z, next = 1e30;
+  for (uint l = 0u; l < SG; l++) {
+    float other = subgroupShuffle(mine, l);   // lanes that do not take part stand in for one that does
+    next = other > mine ? lower(next, other) : next;
+  }
+  float gap = next < 1e30 ? next - mine : 0.0, widest = highest(gap);
+  float end = lowest(gap == widest ? mine : 1e30);
+  uint beyond = subgroupBallot(mine > end).x & lanes;
+  return widest > 0.0 ? beyond : 0u;
+}
+
+void go_on(uint at, uint group, uint lanes, uint next) {
+  uint entry = ((1u - pc.read_list) * pc.capacity + at) * 3u;
+  pc.resume.at[entry] = group;
+  pc.resume.at[entry + 1u] = lanes;
+  pc.resume.at[entry + 2u] = next;
+}
+
+// Writes down where to go on. A group that costs much has view samples far apart, so that what it walks is wide: it goes
+// on as two, of neighbours each.
+void leave(uint group, uint lanes, uint next) {
+  uint beyond = beyond_gap(lanes);
+  if (gl_SubgroupInvocationID != 0u) return;
+  if (beyond != 0u && pc.groups + atomicAdd(pc.header.h.split_count, 1u) < pc.capacity) {
+    uint at = atomicAdd(pc.header.h.resume_count, 2u);
+    go_on(at, group, lanes & ~beyond, next);
+    go_on(at + 1u, group, beyond, next);
+  } else {
+    go_on(atomicAdd(pc.header.h.resume_count, 1u), group, lanes, next);
+  }
 }
 
 void main() {
   uint n = linear_group();
   uint g = RESUMED ? n : interleaved(n);
-  if (n >= pc.work_groups || g >= pc.groups) return;
-  if (RESUMED) g = pc.resume.at[pc.read_list * pc.groups + n];
+  if (n >= pc.work_groups || (!RESUMED && g >= pc.groups)) return;
+  uint lanes = every_lane, start = 0u;
+  if (RESUMED) {
+    uint entry = (pc.read_list * pc.capacity + n) * 3u;
+    g = pc.resume.at[entry];
+    lanes = pc.resume.at[entry + 1u];
+    start = pc.resume.at[entry + 2u];
+  }
   FrameConstants f = frame_constants();
-  begin_group(g, f, pc.slots, pc.light_samples);
+  begin_group(g, lanes, f, pc.slots, pc.light_samples);
   if (BEGIN)
     block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
   else
@@ -103,11 +145,9 @@ void main() {
   if (WALK) {
     if (!BEGIN && COUNTING != 2u) update_open();
     uint next = 0xffffffffu;
-    if (!all_blocked()) next = walk(RESUMED ? pc.resume.at[2u * pc.groups + g] : 0u);
-    if (next != 0xffffffffu && gl_SubgroupInvocationID == 0u) {
-      pc.resume.at[(1u - pc.read_list) * pc.groups + atomicAdd(pc.header.h.resume_count, 1u)] = g;
-      pc.resume.at[2u * pc.groups + g] = next;
-    }
+    bool single = (lanes & (lanes - 1u)) == 0u;
+    if (!all_blocked()) next = walk(start, single ? TURN_LIMIT : pc.split_turns);
+    if (next != 0xffffffffu) leave(g, lanes, next);
   }
   store_mask(pc.masks);
   store_visibility(pc.visibility);
