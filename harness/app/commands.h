@@ -54,6 +54,8 @@ void add_export(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_compare(CLI::App& app, Context& context);
 void add_baseline(CLI::App& app, Context& context);
+void add_merge(CLI::App& app, Context& context);
+void add_completion(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
 
 }  // namespace penumbra

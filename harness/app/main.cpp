@@ -51,7 +51,7 @@ void declare(CLI::App& app, Context& context) {
   app.add_option("--threads", context.threads, "Threads of all host work, Embree and lavapipe (default: all)")
       ->check(CLI::Range(1, 4096));
   for (const auto& add : {add_run, add_render, add_list, add_describe, add_validate, add_metrics, add_export,
-                          add_report, add_compare, add_baseline, add_doctor})
+                          add_report, add_compare, add_baseline, add_merge, add_doctor, add_completion})
     add(app, context);
 }
 

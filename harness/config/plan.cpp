@@ -61,7 +61,8 @@ json expanded(const Sweep& sweep) {
                {{"warmup", sweep.measure.warmup},
                 {"repetitions", sweep.measure.repetitions},
                 {"min_time_s", sweep.measure.min_time_s},
-                {"max_time_s", sweep.measure.max_time_s}}},
+                {"max_time_s", sweep.measure.max_time_s},
+                {"target_interval", sweep.measure.target_interval}}},
               {"frames", sweep.frames},
               {"seed", sweep.seed}};
   if (!sweep.lights.empty()) out["light"] = names_to_json(sweep.lights);

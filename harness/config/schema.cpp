@@ -84,7 +84,8 @@ json measure() {
   return object({{"warmup", integer(0, 1000)},
                  {"repetitions", integer(1, 100000)},
                  {"min_time_s", number(0, 86400)},
-                 {"max_time_s", number(0.001, 86400)}});
+                 {"max_time_s", number(0.001, 86400)},
+                 {"target_interval", number(0, 1)}});
 }
 
 json axes(const Registry& registry) {

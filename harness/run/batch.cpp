@@ -121,7 +121,7 @@ std::string BatchRunner::fingerprint(const Point& point) const {
   Hasher hash;
   hash.text(point.id).text(scene_->content_hash()).text(program_version()).text(device_.info().name);
   hash.text(device_.info().driver_version).value(settings_.reference_samples).value(settings_.threads);
-  hash.value(m.warmup).value(m.repetitions).value(m.min_time_s).value(m.max_time_s);
+  hash.value(m.warmup).value(m.repetitions).value(m.min_time_s).value(m.max_time_s).value(m.target_interval);
   for (const std::string& image : settings_.images) hash.text(image);
   return hash.hex();
 }

@@ -50,7 +50,7 @@ class Measurement {
   bool satisfied() const {
     return !result.error.empty() || out_of_time() ||
            (result.frame_ms.size() >= static_cast<std::size_t>(settings_.repetitions) &&
-            spent_s_ >= settings_.min_time_s);
+            spent_s_ >= settings_.min_time_s && (settings_.target_interval <= 0 || target_reached()));
   }
 
   // Registers what is still wanted: `repetitions` rounds, each long enough that together they fill
@@ -58,7 +58,10 @@ class Measurement {
   void register_round() {
     const double wanted_s = std::max(settings_.min_time_s - spent_s_, 0.0);
     const auto room = static_cast<int>(std::min((settings_.max_time_s - spent_s_) / estimate_s_, 1e6));
-    const int repetitions = std::clamp(settings_.repetitions, 1, std::max(room, 1));
+    // An interval narrows with the root of the number of samples: half as many again, and look anew.
+    const auto more = static_cast<int>(result.frame_ms.size() / 2 + 1);
+    const bool enough = result.frame_ms.size() >= static_cast<std::size_t>(settings_.repetitions);
+    const int repetitions = std::clamp(enough ? more : settings_.repetitions, 1, std::max(room, 1));
     const double per_repetition = std::ceil(wanted_s / repetitions / estimate_s_);
     const auto iterations = static_cast<benchmark::IterationCount>(std::clamp(per_repetition, 1.0, 1e6));
     benchmark::RegisterBenchmark(result.run->point().id.c_str(),
@@ -72,8 +75,12 @@ class Measurement {
     heartbeat_.limit(0);
     if (!result.error.empty()) return;
     const bool enough = result.frame_ms.size() >= static_cast<std::size_t>(settings_.repetitions);
-    if (out_of_time() && (!enough || spent_s_ < settings_.min_time_s))
+    result.interval = interval();
+    const bool wide = settings_.target_interval > 0 && result.interval > settings_.target_interval;
+    if (out_of_time() && (!enough || spent_s_ < settings_.min_time_s || wide))
       result.stopped_by = "max_time_s";
+    else if (settings_.target_interval > 0)
+      result.stopped_by = "target_interval";
     else if (result.frame_ms.size() > static_cast<std::size_t>(settings_.repetitions))
       result.stopped_by = "min_time_s";
   }
@@ -82,6 +89,20 @@ class Measurement {
 
  private:
   bool out_of_time() const { return !result.frame_ms.empty() && spent_s_ >= settings_.max_time_s; }
+
+  // How far the median's 95 % interval reaches to its farther side, as a share of the median.
+  double interval() const {
+    std::vector<double> ascending = result.frame_ms;
+    std::ranges::sort(ascending);
+    const double median = quantile(ascending, 0.5);
+    const auto [lo, hi] = median_interval(ascending);
+    return median > 0 ? std::max(hi - median, median - lo) / median : 0;
+  }
+
+  // Fewer than six samples have their extremes as interval: that says nothing when they happen to agree.
+  bool target_reached() const {
+    return result.frame_ms.size() >= 6 && interval() <= settings_.target_interval;
+  }
 
   // No exception may pass through Google Benchmark.
   template <class Work>
@@ -189,6 +210,7 @@ nlohmann::json timing_json(const Measured& m) {
           {"build_passes", build_passes},
           {"dynamic", m.run->dynamic()},
           {"stopped_by", m.stopped_by},
+          {"interval", m.interval},
           {"outliers", quality.outliers},
           {"drift", quality.drift},
           {"drifts", quality.drifts},

@@ -167,6 +167,27 @@ TEST(Run, TheTimeLimitEndsMeasuringButKeepsOneSample) {
   EXPECT_LE(r["timing"]["frame_ms"]["samples"].size(), 4U);
 }
 
+TEST(Run, GoesOnUntilTheMediansIntervalIsNarrowEnough) {
+  Sweep sweep;
+  sweep.plan.measure = {1, 3, 0, 20, 0.25};
+  sweep.add({{"sleep_ms", int64_t{4}}}).run();
+  const auto timing = sweep.record("p0")["timing"];
+  EXPECT_EQ(timing["stopped_by"], "target_interval");
+  EXPECT_GE(timing["frame_ms"]["samples"].size(), 6U);
+  const double median = timing["frame_ms"]["median"], hi = timing["frame_ms"]["ci95"][1];
+  EXPECT_LE(hi, 1.25 * median * (1 + 1e-9));
+  EXPECT_LE(timing["interval"], 0.25);
+}
+
+TEST(Run, ATargetThatIsNotReachedEndsAtTheTimeLimit) {
+  Sweep sweep;
+  sweep.plan.measure = {1, 3, 0, 0.3, 1e-9};
+  sweep.add({{"sleep_ms", int64_t{4}}}).run();
+  const auto timing = sweep.record("p0")["timing"];
+  EXPECT_EQ(timing["stopped_by"], "max_time_s");
+  EXPECT_GT(timing["frame_ms"]["samples"].size(), 10U);  // it went on as long as it might
+}
+
 TEST(Run, MinTimeIsFilledWithSamples) {
   Sweep sweep;
   sweep.plan.measure = {1, 3, 0.3, 5};
