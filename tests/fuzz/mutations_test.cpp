@@ -37,7 +37,7 @@ std::string mutated(std::string text, std::mt19937& random) {
       "}",          "]",       ",",    ":",     "//",   "/*",          "\"id\"",
       "\"params\"", "[1,2,3]", "\"*\""};
   const auto place = [&] { return text.empty() ? 0 : random() % text.size(); };
-  for (unsigned n = 1 + random() % 3; n > 0; --n) {
+  for (auto n = 1 + random() % 3; n > 0; --n) {
     const std::size_t at = place(), length = 1 + random() % 12;
     switch (random() % 6) {
       case 0:

@@ -9,6 +9,7 @@ for package in libvulkan-dev libembree-dev libopenexr-dev libpng-dev zlib1g-dev 
 done
 found=$(grep -c '^find_package\|^pkg_check_modules\|^find_program\|^find_path\|^  find_package(GTest' "$root/CMakeLists.txt")
 [ "$found" -eq 17 ] || { echo "CMakeLists.txt looks for $found things; name the new one's package in this test"; exit 1; }
-for script in "$root"/scripts/* "$root/.ci/run"; do
+for script in "$root"/scripts/* "$root"/scripts/*/* "$root/.ci/run"; do
+  [ -f "$script" ] || continue
   if head -n 1 "$script" | grep -q bash; then bash -n "$script"; fi
 done

@@ -1,0 +1,54 @@
+"""scripts/equal and scripts/gate_quality."""
+import importlib.machinery
+import importlib.util
+import json
+import subprocess
+import unittest
+
+from test_cli import SOURCE, Folder
+
+
+def script(name):
+    loader = importlib.machinery.SourceFileLoader(name, str(SOURCE / "scripts" / name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
+
+
+def call(name, *arguments):
+    return subprocess.run([SOURCE / "scripts" / name, *map(str, arguments)], capture_output=True, text=True, check=False,
+                          timeout=200)
+
+
+class Equal(Folder):
+    def test_bisection_finds_the_last_value_within(self):
+        bisect = script("equal").bisect
+        for hi in (2, 3, 10, 1000):
+            for limit in range(1, hi + 1):
+                self.assertEqual(bisect(lambda v: v / limit, 1, hi, True)[0], limit)   # grows: the largest within
+                self.assertEqual(bisect(lambda v: limit / v, 1, hi, False)[0], limit)  # falls: the smallest within
+        self.assertIsNone(bisect(lambda v: 2, 1, 9, True)[0])
+        self.assertLess(len(bisect(lambda v: v / 700, 1, 4096, True)[1]), 15)
+
+    def test_an_error_is_met_by_the_smallest_mask_and_no_smaller(self):
+        config = self.write("c.json", {"scene": "torus_knot", "resolution": 32, "techniques": ["ray_tracing"],
+                                       "reference": {"light_samples": 64},
+                                       "measure": {"warmup": 0, "repetitions": 1, "min_time_s": 0}})
+        result = call("equal", config, "--technique", "ray_tracing", "--vary", "mask_size", "--range", 1, 8, "--error",
+                      "metrics.rmse=0.04", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        row = json.loads(result.stdout)[0]
+        tries = {int(k): v for k, v in row["tries"].items()}
+        self.assertLessEqual(tries[row["value"]], 1)
+        self.assertGreater(tries[row["value"] - 1], 1)
+        self.assertLessEqual(row["ray_tracing"]["rmse"], 0.04)
+
+    def test_wrong_arguments_are_refused(self):
+        config = self.write("c.json", {"scene": "torus_knot"})
+        for goal in (("--error", "metrics.rmse"), ("--range", 5, 5)):
+            result = call("equal", config, "--technique", "x", "--vary", "mask_size", "--range", 1, 4, "--time-ms", 1, *goal)
+            self.assertEqual(result.returncode, 2, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
