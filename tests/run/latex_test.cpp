@@ -66,7 +66,7 @@ TEST(ProvenanceText, NamesProgramMachineAndCounts) {
                     {"environment", {{"LP_NUM_THREADS", "2"}}},
                     {"config", {{"reference", {{"light_samples", 64}}}}}};
   const std::string t = provenance_text(run, some_points());
-  for (const char* part : {"Penumbra 1.2, commit abc", "A CPU (2 cores used", "2 of its 3 points",
+  for (const char* part : {"Penumbra 1.2, commit abc", "A CPU (2 cores used", "3 of its 4 points",
                            "LP_NUM_THREADS=2", "64 light samples", "year = {2026}", "@software"})
     EXPECT_TRUE(has(t, part)) << part << "\n" << t;
 }
