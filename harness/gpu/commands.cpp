@@ -120,8 +120,9 @@ void Commands::update(const Buffer& buffer, const void* data, uint64_t bytes, ui
 }
 
 void Commands::copy_image_to_buffer(const Image& image, const Buffer& buffer, VkImageAspectFlags aspect,
-                                    uint32_t layer) {
+                                    uint32_t layer, uint64_t offset) {
   VkBufferImageCopy region{};
+  region.bufferOffset = offset;
   region.imageSubresource = {aspect, 0, layer, 1};
   region.imageExtent = {image.desc().width, image.desc().height, 1};
   vkCmdCopyImageToBuffer(handle_, image.handle(), VK_IMAGE_LAYOUT_GENERAL, buffer.handle(), 1, &region);

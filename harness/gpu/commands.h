@@ -68,8 +68,9 @@ class Commands {
   void fill(const Buffer& buffer, uint32_t value, uint64_t offset = 0, uint64_t bytes = VK_WHOLE_SIZE);
   // Host bytes into the command stream; at most 65,536, a multiple of 4.
   void update(const Buffer& buffer, const void* data, uint64_t bytes, uint64_t offset = 0);
+  // Mip 0; texels tightly packed from `offset`.
   void copy_image_to_buffer(const Image& image, const Buffer& buffer, VkImageAspectFlags aspect,
-                            uint32_t layer = 0);
+                            uint32_t layer = 0, uint64_t offset = 0);
   // Layer 0, mip 0; texels tightly packed from `offset`.
   void copy_buffer_to_image(const Buffer& buffer, const Image& image, VkImageAspectFlags aspect,
                             uint64_t offset = 0);

@@ -12,7 +12,9 @@ namespace {
 
 constexpr VkFormat stencil_format = VK_FORMAT_D32_SFLOAT_S8_UINT;
 constexpr uint32_t group = 64;
-constexpr int batch = 8;              // light samples per stencil
+constexpr int batch = 8;                                           // light samples per stencil
+constexpr int word = 32;                                           // light samples per word of a mask
+constexpr std::size_t most_stencil_bytes = std::size_t{64} << 20;  // gathered at once
 constexpr double lowest = 1e-6;       // scene diagonals: what lies in the plane casts nothing onto it
 constexpr double highest = 1 - 1e-6;  // of the light's height
 
@@ -30,6 +32,9 @@ gpu::GraphicsPipeline make_mark(gpu::Device& device, uint32_t bit) {
   desc.stencil_front = desc.stencil_back = s;
   return gpu::GraphicsPipeline(device, desc);
 }
+
+// Of one stencil, a byte per pixel.
+std::size_t slice_bytes(uint32_t width, uint32_t height) { return (std::size_t{width} * height + 3) / 4 * 4; }
 
 double height(Vec4d plane, Vec4d light) {
   return plane.x * light.x + plane.y * light.y + plane.z * light.z + plane.w * light.w;
@@ -53,7 +58,9 @@ std::optional<std::string> missing(gpu::Device& device) {
 
 void Projector::setup(gpu::Device& device) {
   for (uint32_t bit = 0; bit < batch; ++bit) mark_[bit] = make_mark(device, bit);
+  const std::array<gpu::Specialization, 1> each{{{0, VK_TRUE}}};
   gather_ = gpu::ComputePipeline(device, planar_shadow_gather_spv, sizeof(GatherPush));
+  gather_each_ = gpu::ComputePipeline(device, planar_shadow_gather_spv, sizeof(GatherPush), each);
 }
 
 void Projector::build(const Case& c, const Receiver& receiver, gpu::PassRecorder& passes) {
@@ -76,21 +83,27 @@ void Projector::build(const Case& c, const Receiver& receiver, gpu::PassRecorder
 void Projector::ensure(const RenderInput& in, gpu::PassRecorder& passes) {
   gpu::Device& device = *in.scene_case->device;
   const LightSamples& light = *in.scene_case->light_samples;
-  gpu::ensure(points_, device, light.points.size() * sizeof(Vec4f), gpu::Memory::device,
-              "planar shadow: light");
-  gpu::ensure(weights_, device, light.weights.size() * sizeof(float), gpu::Memory::device,
-              "planar shadow: light");
-  gpu::upload(passes, "upload_light", points_, light.points.data(), light.points.size() * sizeof(Vec4f));
-  gpu::upload(passes, "upload_light", weights_, light.weights.data(), light.weights.size() * sizeof(float));
+  const auto send = [&](gpu::Buffer& buffer, const auto& values) {
+    const std::size_t bytes = values.size() * sizeof(values[0]);
+    gpu::ensure(buffer, device, bytes, gpu::Memory::device, "planar shadow: light");
+    gpu::upload(passes, "upload_light", buffer, values.data(), bytes);
+  };
+  send(points_, light.points);
+  send(weights_, light.weights);
+  send(dark_, dark_words_);
   const auto width = static_cast<uint32_t>(in.view_samples->width()),
              height = static_cast<uint32_t>(in.view_samples->height());
+  const int batches = (light.count() + batch - 1) / batch, to_word = word / batch;
+  const std::size_t slice = slice_bytes(width, height);
+  const auto fit = static_cast<int>(most_stencil_bytes / slice) / to_word * to_word;
+  slices_ = std::min(batches, std::max(fit, to_word));
+  gpu::ensure(stencil_, device, slice * static_cast<std::size_t>(slices_), gpu::Memory::device,
+              "planar shadow: stencils");
   if (image_ && image_.desc().width == width && image_.desc().height == height) return;
   gpu::ImageDesc desc;
   desc.width = width, desc.height = height, desc.format = stencil_format;
   desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   image_ = gpu::Image(device, desc, "planar shadow: stencil");
-  gpu::ensure(stencil_, device, (std::size_t{width} * height + 3) / 4 * 4, gpu::Memory::device,
-              "planar shadow: stencil");
   passes.device_pass("flatten", [&](gpu::Commands& commands) { commands.initialise(image_); });
 }
 
@@ -120,8 +133,7 @@ void Projector::flatten(gpu::Commands& commands, const RenderInput& in, const Re
   commands.end_rendering();
 }
 
-void Projector::run(const RenderInput& in, const Receiver& receiver, gpu::PassRecorder& passes) {
-  ensure(in, passes);
+void Projector::gather(const RenderInput& in, int first, int end, gpu::PassRecorder& passes) const {
   const Case& c = *in.scene_case;
   const ViewSamples& view = *in.view_samples;
   GatherPush p{};
@@ -129,24 +141,40 @@ void Projector::run(const RenderInput& in, const Receiver& receiver, gpu::PassRe
   p.triangle = view.triangle().address(), p.on_receiver = on_receiver_.address();
   p.position = view.position().address(), p.normal = view.geometric_normal().address();
   p.stencil = stencil_.address(), p.points = points_.address(), p.weights = weights_.address();
+  p.dark = dark_.address();
   p.visibility = in.device.visibility->address(), p.mask = in.device.mask->address();
+  p.weight = c.light_samples->uniform_weights ? c.light_samples->weights.front() : 0.0f;
   p.pixels = static_cast<uint32_t>(view.width()) * static_cast<uint32_t>(view.height());
   p.words = static_cast<uint32_t>(c.light_samples->mask_words());
-  p.count = static_cast<uint32_t>(c.light_samples->count());
-  for (int first = 0; first < c.light_samples->count(); first += batch) {
-    passes.device_pass("flatten", [&](gpu::Commands& commands) { flatten(commands, in, receiver, first); });
-    p.first = static_cast<uint32_t>(first);
-    passes.device_pass("gather", [&](gpu::Commands& commands) {
-      commands.copy_image_to_buffer(image_, stencil_, VK_IMAGE_ASPECT_STENCIL_BIT);
-      commands.barrier();
-      commands.dispatch(gather_, p, (p.pixels + group - 1) / group);
-    });
+  p.first = static_cast<uint32_t>(first), p.end = static_cast<uint32_t>(end);
+  passes.device_pass("gather", [&](gpu::Commands& commands) {
+    commands.dispatch(each_pixel_ ? gather_each_ : gather_, p, (p.pixels / 4 + group) / group);
+  });
+}
+
+void Projector::run(const RenderInput& in, const Receiver& receiver, gpu::PassRecorder& passes) {
+  const Case& c = *in.scene_case;
+  each_pixel_ = !same_horizon(receiver, *c.light_samples, light_emission(c.frame->light).emission,
+                              Vec3d(c.frame->camera.eye), dark_words_);
+  ensure(in, passes);
+  const int count = c.light_samples->count();
+  const std::size_t slice = slice_bytes(image_.desc().width, image_.desc().height);
+  for (int begin = 0; begin < count; begin += slices_ * batch) {
+    const int end = std::min(begin + slices_ * batch, count);
+    for (int first = begin; first < end; first += batch)
+      passes.device_pass("flatten", [&](gpu::Commands& commands) {
+        flatten(commands, in, receiver, first);
+        commands.barrier();
+        commands.copy_image_to_buffer(image_, stencil_, VK_IMAGE_ASPECT_STENCIL_BIT, 0,
+                                      slice * static_cast<std::size_t>((first - begin) / batch));
+      });
+    gather(in, begin, end, passes);
   }
 }
 
 uint64_t Projector::bytes() const {
   return image_.bytes() + indices_.bytes() + on_receiver_.bytes() + stencil_.bytes() + points_.bytes() +
-         weights_.bytes();
+         weights_.bytes() + dark_.bytes() + dark_words_.capacity() * sizeof(uint32_t);
 }
 
 }  // namespace penumbra::planar_shadow

@@ -90,6 +90,48 @@ TEST(PlanarShadow, DiffersOnlyInTiesUnderAMesh) {
   EXPECT_LT(double(off), 1e-3 * double(compared));
 }
 
+// Part of the ground is behind the first rectangle, part of the second rectangle is below the ground; the
+// camera then looks from below.
+TEST(PlanarShadow, KnowsWhatIsBehindTheLightOrBelowTheHorizon) {
+  for (const Light& light : {testing::rectangle_light({1, 2, 2}, {3, 1.5f, 3}, 1.5f, 1),
+                             testing::rectangle_light({3, 0.3f, 2}, {0, 0.2f, 0}, 1.5f, 2)})
+    for (const float eye_height : {4.0f, -4.0f}) {
+      Frame f = box_over_ground(light);
+      f.camera = camera_at({2, eye_height, 6}, {0, 0, 0});
+      Stage stage(std::move(f), 129, 97);
+      stage.light_samples = make_light_samples(light, {6, 6});
+      const Rendered m = stage.render(info, {});
+      std::size_t compared = 0;
+      const std::size_t off = differing_bits(stage, m, &compared);
+      if (eye_height < 0 && light.center.y > 1) {
+        EXPECT_EQ(compared, 0U) << "nothing is above the horizon";
+        continue;
+      }
+      EXPECT_GT(compared, 5000U);
+      EXPECT_LT(double(off), 0.002 * double(compared));
+    }
+}
+
+TEST(Receiver, TellsWhichLightSamplesAreBelowItsHorizon) {
+  Geometry g;
+  testing::add_ground(g, 4);
+  as_instance(g, 0, 0);
+  const auto receiver = std::get<planar_shadow::Receiver>(planar_shadow::find_receiver(g, -1));
+  LightSamples samples;
+  samples.points = {{0, 1, 0, 1}, {0, -1, 0, 1}, {0.6f, 0.8f, 0, 0}, {0.6f, -0.8f, 0, 0}};
+  samples.weights.assign(4, 0.25f);
+  const Vec4f everywhere{0, -1, 0, -1}, cone{0, -1, 0, 0.7f};
+  std::vector<uint32_t> dark;
+  EXPECT_TRUE(planar_shadow::same_horizon(receiver, samples, everywhere, {0, 3, 0}, dark));
+  EXPECT_EQ(dark, std::vector<uint32_t>{0b1010});
+  EXPECT_TRUE(planar_shadow::same_horizon(receiver, samples, everywhere, {0, -3, 0}, dark));
+  EXPECT_EQ(dark, std::vector<uint32_t>{0b0101});
+  EXPECT_FALSE(planar_shadow::same_horizon(receiver, samples, everywhere, {0, 1e-5, 0}, dark));
+  EXPECT_FALSE(planar_shadow::same_horizon(receiver, samples, cone, {0, 3, 0}, dark));
+  samples.points[1].y = 1e-5f;  // grazes the ground
+  EXPECT_FALSE(planar_shadow::same_horizon(receiver, samples, everywhere, {0, 3, 0}, dark));
+}
+
 TEST(PlanarShadow, SecondFrameAllocatesNothingAndGivesTheSameBits) {
   Stage stage(box_over_ground(testing::rectangle_light({1, 5, 2}, {0, 0, 0}, 1.5f, 1)), 100, 60);
   stage.light_samples = make_light_samples(stage.frame.light, {7, 5});

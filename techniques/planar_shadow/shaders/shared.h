@@ -28,19 +28,22 @@ struct GatherPush {
   ADDRESS_OF(UintArray) on_receiver;  // a bit per triangle
   ADDRESS_OF(Vec4Array) position;
   ADDRESS_OF(Vec4Array) normal;
-  ADDRESS_OF(UintArray) stencil;      // a byte per pixel, a bit per light sample of the batch
+  ADDRESS_OF(UintArray) stencil;      // slices of 8 light samples each; a byte per pixel, a bit per light sample
   ADDRESS_OF(Vec4Array) points;       // light samples
   ADDRESS_OF(FloatArray) weights;
+  ADDRESS_OF(UintArray) dark;         // mask of the light samples that light no point of the receiver
   ADDRESS_OF(FloatArray) visibility;
   ADDRESS_OF(UintArray) mask;
+  float weight;  // of every light sample; 0: they differ
   uint pixels;
   uint words;   // of a pixel's mask
-  uint first;   // light sample of the batch; a multiple of 8
-  uint count;   // light samples in all
+  uint first;   // light samples first ... end; first is a multiple of 32
+  uint end;
+  uint unused;
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FlattenPush) == 88 && sizeof(GatherPush) == 104);
+static_assert(sizeof(FlattenPush) == 88 && sizeof(GatherPush) == 120);
 }  // namespace penumbra::planar_shadow
 #endif
 #endif
