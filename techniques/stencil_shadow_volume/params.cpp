@@ -17,6 +17,11 @@ const ParamTable<Params>& param_table() {
         {"", "",
          "triangles that cast: all (any mesh), or those that turn their back to the light (closed meshes, "
          "half the fill)"});
+    t.choice(
+        "counter", &Params::counter, {"automatic", "stencil", "wide"},
+        {"", "",
+         "what counts: the 8-bit stencil, which wraps at 256 volumes; floats, which do not; automatic: the "
+         "stencil where build has proved that no more than 250 volumes lie over each other, else floats"});
     return t;
   }();
   return table;

@@ -1,4 +1,4 @@
-// Statistics of the last frame, as README.md lists them: drawn again into float counts that cannot wrap.
+// Statistics of the last frame, as README.md lists them: drawn again into counts that cannot wrap.
 #pragma once
 #include "techniques/stencil_shadow_volume/stencil_pass.h"
 
@@ -9,6 +9,8 @@ struct LastFrame {
   RenderInput in;
   Variant variant = Variant::z_fail;  // zp_plus becomes z_fail where it falls back
   bool fell_back = false;
+  bool wide = false;    // counted in floats
+  uint32_t layers = 0;  // at most so many volumes lie over each other (see layers.h)
   std::optional<Mat4d> near_plane;
 };
 

@@ -1,5 +1,7 @@
 #include "techniques/stencil_shadow_volume/stencil_pass.h"
 
+#include <array>
+
 #include "shaders/shadow_volume_resolve.h"
 #include "shaders/shadow_volume_volume.h"
 
@@ -18,13 +20,15 @@ VkStencilOpState counting(VkStencilOp pass, VkStencilOp depth_fail) {
 // Both sides of all faces in one draw. A face counts as nearer than the view sample only where it is
 // strictly: the near cap that a view sample lies on has the same depth, and is to count as behind it, so that
 // the lit side of a surface is outside the volume that begins there.
-gpu::GraphicsPipeline make(gpu::Device& device, const Counting& c, bool depth_test, bool depth_clamp) {
+gpu::GraphicsPipeline make(gpu::Device& device, const Counting& c, bool depth_test, bool depth_clamp,
+                           bool depth_bias = false) {
   gpu::GraphicsDesc desc;
   desc.vertex = shadow_volume_volume_spv;
   desc.push_bytes = sizeof(VolumePush);
   desc.depth_format = stencil_format;
   desc.depth_test = depth_test, desc.depth_clamp = depth_clamp;
   desc.depth_compare = VK_COMPARE_OP_GREATER;
+  desc.depth_bias = depth_bias;
   desc.stencil_test = true, desc.stencil_front = c.front, desc.stencil_back = c.back;
   return gpu::GraphicsPipeline(device, desc);
 }
@@ -48,81 +52,93 @@ void StencilPass::setup(gpu::Device& device) {
   const Counting leave{counting(keep, down), counting(keep, up)};  // behind: the other way round
   // z-pass counts from the near plane, which therefore clips; z-fail counts from infinity, and is held there
   // by clamping.
-  pass_ = make(device, enter, true, false);
-  fail_ = make(device, leave, true, true);
+  pass_ = make(device, enter, true, false, true);
+  fail_ = make(device, leave, true, true, true);
   // Near caps are clipped as the surfaces that they lie on were: a triangle that the near plane cuts has
   // other depths where it is clamped.
   cap_front_ = make(device, leave, true, false);
   cap_back_ = make(device, leave.flipped(), true, false);
   near_ = make(device, {counting(up, keep), counting(up, keep)}, false, false);
+  const std::array<gpu::Specialization, 1> wide{{{0, VK_TRUE}}};
   resolve_ = gpu::ComputePipeline(device, shadow_volume_resolve_spv, sizeof(ResolvePush));
+  resolve_wide_ = gpu::ComputePipeline(device, shadow_volume_resolve_spv, sizeof(ResolvePush), wide);
+  if (FragmentCounts::supported(device)) wide_.setup(device);
 }
 
-void StencilPass::ensure(const RenderInput& in, gpu::PassRecorder& passes) {
+void StencilPass::ensure(const RenderInput& in, bool wide, gpu::PassRecorder& passes) {
   const auto width = static_cast<uint32_t>(in.view_samples->width()),
              height = static_cast<uint32_t>(in.view_samples->height());
-  if (image_ && image_.desc().width == width && image_.desc().height == height) return;
   gpu::Device& device = *in.scene_case->device;
-  gpu::ImageDesc desc;
-  desc.width = width, desc.height = height, desc.format = stencil_format;
-  desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-               VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  image_ = gpu::Image(device, desc, "shadow volumes: depth and stencil");
   const std::size_t pixels = std::size_t{width} * height;
-  gpu::ensure(depth_, device, pixels * sizeof(float), gpu::Memory::device, "shadow volumes: depth");
-  gpu::ensure(stencil_, device, (pixels + 3) / 4 * 4, gpu::Memory::device, "shadow volumes: stencil");
-  passes.device_pass("depth_copy", [&](gpu::Commands& commands) { commands.initialise(image_); });
+  gpu::ensure(counts_, device, wide ? pixels * sizeof(float) : (pixels + 3) / 4 * 4, gpu::Memory::device,
+              "shadow volumes: counts");
+  const auto initialise = [&](const gpu::Image& image) {
+    passes.device_pass("depth_copy", [&](gpu::Commands& commands) { commands.initialise(image); });
+  };
+  if (!image_ || image_.desc().width != width || image_.desc().height != height) {
+    gpu::ImageDesc desc;
+    desc.width = width, desc.height = height, desc.format = stencil_format;
+    desc.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                 VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    image_ = gpu::Image(device, desc, "shadow volumes: depth and stencil");
+    gpu::ensure(depth_, device, pixels * sizeof(float), gpu::Memory::device, "shadow volumes: depth");
+    initialise(image_);
+  }
+  if (wide && wide_.ensure(device, image_)) initialise(wide_.image());
 }
 
-void StencilPass::draw(gpu::Commands& commands, const Volumes& volumes, Variant variant, const Camera& camera,
-                       int width, int height, const std::optional<Mat4d>& near_plane) const {
-  const auto w = static_cast<uint32_t>(width), h = static_cast<uint32_t>(height);
+void StencilPass::draw(gpu::Commands& commands, const Volumes& volumes, Variant variant, const Mat4d& view,
+                       const std::optional<Mat4d>& near_plane) const {
+  const uint32_t w = image_.desc().width, h = image_.desc().height;
   gpu::RenderTarget target{.view = image_.view(), .load = VK_ATTACHMENT_LOAD_OP_LOAD};
   commands.begin_rendering(w, h, {}, &target, stencil_format);
   commands.clear_stencil(0, w, h);
-  const auto draw_lists = [&](const gpu::GraphicsPipeline& pipeline, const Mat4d& clip_from_world,
-                              std::initializer_list<uint32_t> lists) {
-    commands.bind(pipeline);
-    const VolumePush push = volumes.push(clip_from_world);
-    commands.push(pipeline, &push, sizeof push);
-    for (uint32_t list : lists) volumes.draw(commands, list);
-  };
-  const Mat4d view = camera.clip_from_world(width, height);
-  if (near_plane) draw_lists(near_, *near_plane, {LIST_NEAR_FRONT, LIST_NEAR_BACK});
+  if (near_plane) volumes.draw(commands, near_, *near_plane, {LIST_NEAR_FRONT, LIST_NEAR_BACK});
   if (variant == Variant::z_fail) {
-    draw_lists(fail_, view, {LIST_SIDES, LIST_FAR});
-    draw_lists(cap_front_, view, {LIST_NEAR_FRONT});
-    draw_lists(cap_back_, view, {LIST_NEAR_BACK});
+    volumes.draw(commands, fail_, view, {LIST_SIDES, LIST_FAR}, side_slope_bias);
+    volumes.draw(commands, cap_front_, view, {LIST_NEAR_FRONT});
+    volumes.draw(commands, cap_back_, view, {LIST_NEAR_BACK});
   } else {
-    draw_lists(pass_, view, {LIST_SIDES});
+    volumes.draw(commands, pass_, view, {LIST_SIDES}, side_slope_bias);
   }
   commands.end_rendering();
 }
 
+void StencilPass::resolve(const RenderInput& in, bool wide, gpu::PassRecorder& passes) const {
+  const ViewSamples& view = *in.view_samples;
+  const LightEmission light = light_emission(in.scene_case->frame->light);
+  ResolvePush p{};
+  p.light = light.towards, p.emission = light.emission;
+  p.position = view.position().address(), p.normal = view.geometric_normal().address();
+  p.counts = counts_.address(), p.visibility = in.device.visibility->address();
+  p.count = static_cast<uint32_t>(view.width()) * static_cast<uint32_t>(view.height());
+  passes.device_pass("resolve", [&](gpu::Commands& commands) {
+    if (wide)
+      commands.copy_image_to_buffer(wide_.image(), counts_, VK_IMAGE_ASPECT_COLOR_BIT);
+    else
+      commands.copy_image_to_buffer(image_, counts_, VK_IMAGE_ASPECT_STENCIL_BIT);
+    commands.barrier();
+    commands.dispatch(wide ? resolve_wide_ : resolve_, p, (p.count + group - 1) / group);
+  });
+}
+
 void StencilPass::run(const RenderInput& in, const Volumes& volumes, Variant variant,
-                      const std::optional<Mat4d>& near_plane, gpu::PassRecorder& passes) {
-  ensure(in, passes);
+                      const std::optional<Mat4d>& near_plane, bool wide, gpu::PassRecorder& passes) {
+  ensure(in, wide, passes);
   const ViewSamples& view = *in.view_samples;
   passes.device_pass("depth_copy", [&](gpu::Commands& commands) {
     commands.copy_image_to_buffer(view.depth(), depth_, VK_IMAGE_ASPECT_DEPTH_BIT);
     commands.barrier();
     commands.copy_buffer_to_image(depth_, image_, VK_IMAGE_ASPECT_DEPTH_BIT);
   });
-  const Frame& frame = *in.scene_case->frame;
+  const Mat4d clip_from_world = in.scene_case->frame->camera.clip_from_world(view.width(), view.height());
   passes.device_pass("volumes", [&](gpu::Commands& commands) {
-    draw(commands, volumes, variant, frame.camera, view.width(), view.height(), near_plane);
+    if (wide)
+      wide_.volumes(commands, volumes, image_, variant, clip_from_world, near_plane);
+    else
+      draw(commands, volumes, variant, clip_from_world, near_plane);
   });
-  const LightEmission light = light_emission(frame.light);
-  ResolvePush p{};
-  p.light = light.towards, p.emission = light.emission;
-  p.position = view.position().address(), p.normal = view.geometric_normal().address();
-  p.stencil = stencil_.address(), p.visibility = in.device.visibility->address();
-  p.count = static_cast<uint32_t>(view.width()) * static_cast<uint32_t>(view.height());
-  passes.device_pass("resolve", [&](gpu::Commands& commands) {
-    commands.copy_image_to_buffer(image_, stencil_, VK_IMAGE_ASPECT_STENCIL_BIT);
-    commands.barrier();
-    commands.dispatch(resolve_, p, (p.count + group - 1) / group);
-  });
+  resolve(in, wide, passes);
 }
 
 }  // namespace penumbra::shadow_volume

@@ -1,11 +1,16 @@
 #include "techniques/stencil_shadow_volume/stencil_shadow_volume.h"
 
+#include "core/error.h"
+#include "techniques/stencil_shadow_volume/layers.h"
 #include "techniques/stencil_shadow_volume/near_plane.h"
 #include "techniques/stencil_shadow_volume/statistics.h"
 
 namespace penumbra {
 namespace shadow_volume {
 namespace {
+
+// Volumes over each other that the stencil surely counts: 255, less what rounding at rims may add.
+constexpr uint32_t safe_layers = 250;
 
 class StencilShadowVolume final : public Technique {
  public:
@@ -20,6 +25,8 @@ class StencilShadowVolume final : public Technique {
       return "The scene has more vertices than indices of extruded ones can name.";
     if (params_.casters == Casters::light_back_facing && !c.frame->geometry.closed)
       return "With casters: light_back_facing every mesh has to be closed, which the scene's are not.";
+    if (params_.counter == Counter::wide && !FragmentCounts::supported(*c.device))
+      return "The device cannot add up floats in a picture, which counter: wide needs.";
     return {};
   }
 
@@ -28,11 +35,24 @@ class StencilShadowVolume final : public Technique {
     stencil_.setup(*c.device);
   }
 
-  void build(const Case& c, gpu::PassRecorder& passes) override { volumes_.build(c, passes); }
+  void build(const Case& c, gpu::PassRecorder& passes) override {
+    volumes_.build(c, passes);
+    wide_ = params_.counter == Counter::wide;
+    if (params_.counter != Counter::automatic) return;
+    passes.host_pass("layers", [&] {
+      const Vec4f l = light_emission(c.frame->light).towards;
+      layers_ = most_layers(c.frame->geometry, {l.x, l.y, l.z, l.w}, safe_layers);
+    });
+    wide_ = layers_ > safe_layers;
+    if (wide_ && !FragmentCounts::supported(*c.device))
+      throw PointError(
+          "More than 250 volumes may lie over each other: the 8-bit stencil could wrap, and the device "
+          "cannot add up floats in a picture instead.");
+  }
 
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {
     const Case& c = *in.scene_case;
-    last_ = {in, params_.variant, false, {}};
+    last_ = {in, params_.variant, false, wide_, layers_, {}};
     if (params_.variant == Variant::zp_plus) {
       const Vec4f l = light_emission(c.frame->light).towards;
       last_.near_plane =
@@ -42,7 +62,7 @@ class StencilShadowVolume final : public Technique {
       if (last_.fell_back) last_.variant = Variant::z_fail;
     }
     volumes_.extract(c, last_.variant, passes);
-    stencil_.run(in, volumes_, last_.variant, last_.near_plane, passes);
+    stencil_.run(in, volumes_, last_.variant, last_.near_plane, wide_, passes);
   }
 
   Counters counters() override { return count(params_, volumes_, stencil_, last_); }
@@ -54,6 +74,8 @@ class StencilShadowVolume final : public Technique {
   Volumes volumes_;
   StencilPass stencil_;
   LastFrame last_;
+  uint32_t layers_ = 0;
+  bool wide_ = false;
 };
 
 }  // namespace

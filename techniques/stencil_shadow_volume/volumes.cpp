@@ -127,17 +127,19 @@ void Volumes::extract(const Case& c, Variant variant, gpu::PassRecorder& passes)
   });
 }
 
-void Volumes::draw(gpu::Commands& commands, uint32_t list) const {
-  if (indices_[list])
-    commands.draw_indexed_indirect(indices_[list], draws_,
-                                   offsetof(Draws, list) + list * sizeof(DrawArguments));
-}
-
-VolumePush Volumes::push(const Mat4d& clip_from_world) const {
+void Volumes::draw(gpu::Commands& commands, const gpu::GraphicsPipeline& pipeline,
+                   const Mat4d& clip_from_world, std::initializer_list<uint32_t> lists,
+                   std::optional<float> slope_bias) const {
   VolumePush p{};
   p.clip_from_world = to_float(clip_from_world), p.light = light_.towards, p.apex = apex_;
   p.positions = geometry_->positions.address(), p.vertex_count = geometry_->vertex_count;
-  return p;
+  commands.bind(pipeline);
+  commands.push(pipeline, &p, sizeof p);
+  if (slope_bias) commands.set_depth_bias(0, *slope_bias);
+  for (uint32_t list : lists)
+    if (indices_[list])
+      commands.draw_indexed_indirect(indices_[list], draws_,
+                                     offsetof(Draws, list) + list * sizeof(DrawArguments));
 }
 
 uint64_t Volumes::bytes() const {

@@ -1,5 +1,7 @@
 // The shadow volumes of one frame, as lists of indices made on the device.
 #pragma once
+#include <optional>
+
 #include "gpu/buffer.h"
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
@@ -21,10 +23,10 @@ class Volumes {
   void build(const Case& c, gpu::PassRecorder& passes);
   // Lists for z-pass (sides), ZP+ (and near caps) or z-fail (and far caps). Passes "facing", "silhouettes".
   void extract(const Case& c, Variant variant, gpu::PassRecorder& passes);
-  // Draws one list of the last extract(), or nothing when it is not part of it.
-  void draw(gpu::Commands& commands, uint32_t list) const;
-  // What volume.vert needs to project them with `clip_from_world`.
-  VolumePush push(const Mat4d& clip_from_world) const;
+  // Draws lists of the last extract(); those that are not part of it are empty. `slope_bias`: for pipelines
+  // that push depth back.
+  void draw(gpu::Commands& commands, const gpu::GraphicsPipeline& pipeline, const Mat4d& clip_from_world,
+            std::initializer_list<uint32_t> lists, std::optional<float> slope_bias = {}) const;
 
   Draws read_draws() const { return *static_cast<const Draws*>(draws_read_back_.mapped()); }
   uint32_t indices_per_quad() const { return indices_per_quad_; }

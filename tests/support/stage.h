@@ -69,7 +69,7 @@ class Stage {
     return technique;
   }
   // `sampled`: the technique writes masks.
-  Rendered render(Technique& technique, bool sampled = false) {
+  Rendered render(Technique& technique, bool sampled = false, bool counted = true) {
     Rendered r;
     r.visibility.resize(pixels());
     if (sampled) r.mask.resize(pixels() * mask_words());
@@ -80,7 +80,7 @@ class Stage {
     gpu::download(passes, "download", visibility, r.visibility.data(), sizeof(float) * pixels());
     if (sampled) gpu::download(passes, "download", mask, r.mask.data(), mask_bytes);
     passes.take_times();
-    r.counters = technique.counters();
+    if (counted) r.counters = technique.counters();
     r.evaluated = technique.evaluated_mask();
     return r;
   }

@@ -74,7 +74,7 @@ struct ResolvePush {
   vec4 emission;  // axis, and cosine of the half angle about it in which light leaves (-1: everywhere)
   ADDRESS_OF(Vec4Array) position;
   ADDRESS_OF(Vec4Array) normal;
-  ADDRESS_OF(UintArray) stencil;  // a byte per pixel
+  ADDRESS_OF(UintArray) counts;  // a byte per pixel, or a float
   ADDRESS_OF(FloatArray) visibility;
   uint count;
   uint unused;
