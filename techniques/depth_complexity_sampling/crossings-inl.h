@@ -130,10 +130,13 @@ HWY_INLINE void find_crossings(const EdgeList& edges, const View& view, Crossing
     const Vector w = hn::IfThenElse(sign_bit(s1), hn::Neg(magnitude), magnitude);
     if (!hn::AllFalse(d, event)) {
       const Mask e_a = hn::And(event, above_a), e_b = hn::And(event, above_b);
-      hn::CompressStore(c_a, e_a, d, out.v[event_x].data() + events);
-      events += hn::CompressStore(hn::Neg(w), e_a, d, out.v[event_weight].data() + events);
-      hn::CompressStore(c_b, e_b, d, out.v[event_x].data() + events);
-      events += hn::CompressStore(w, e_b, d, out.v[event_weight].data() + events);
+      const Packing of_a(e_a), of_b(e_b);
+      of_a.store(c_a, out.v[event_x].data() + events);
+      of_a.store(hn::Neg(w), out.v[event_weight].data() + events);
+      events += of_a.count();
+      of_b.store(c_b, out.v[event_x].data() + events);
+      of_b.store(w, out.v[event_weight].data() + events);
+      events += of_b.count();
     }
     if (hn::AllFalse(d, crosses)) continue;
 
@@ -150,14 +153,15 @@ HWY_INLINE void find_crossings(const EdgeList& edges, const View& view, Crossing
       line.slope = hn::IfThenElse(by_plane, l.slope, line.slope);
       lo = hn::IfThenElse(behind, set(-beyond), lo), hi = hn::IfThenElse(behind, set(beyond), hi);
     }
-    const auto keep = [&](CrossingField f, Vector v)
-                          HWY_ATTR { return hn::CompressStore(v, crosses, d, out.v[f].data() + count); };
+    const Packing packing(crosses);
+    const auto keep = [&](CrossingField f, Vector v) HWY_ATTR { packing.store(v, out.v[f].data() + count); };
     keep(cross_x0, line.x0), keep(cross_y0, line.y0);
     keep(cross_slope, hn::Min(hn::Max(line.slope, set(-beyond)), set(beyond)));
     keep(cross_lo, hn::Max(lo, first_row));
     keep(cross_hi, hn::Min(hi, hn::Add(last_row, set(1.0F))));
     keep(cross_first, hn::Min(c_a, c_b)), keep(cross_last, hn::Max(c_a, c_b));
-    count += keep(cross_weight, hn::IfThenElse(hn::Lt(c_b, c_a), hn::Neg(w), w));
+    keep(cross_weight, hn::IfThenElse(hn::Lt(c_b, c_a), hn::Neg(w), w));
+    count += packing.count();
   }
   out.count = count, out.events = events;
 }

@@ -6,26 +6,12 @@
 #else
 #define PENUMBRA_DEPTH_COMPLEXITY_CULL
 #endif
-#include <hwy/highway.h>
-
 #include <algorithm>
 
-#include "techniques/depth_complexity_sampling/kernel.h"
+#include "techniques/depth_complexity_sampling/packing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::depth_complexity::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::CappedTag<float, block_edges>;
-using Vector = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-
-HWY_INLINE Vector set(float v) { return hn::Set(Floats(), v); }
-HWY_INLINE uint32_t bits_of(Mask m) {
-  alignas(16) uint8_t bytes[16] = {};
-  hn::StoreMaskBits(Floats(), m, bytes);
-  return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8;
-}
 
 // The bounds of some view samples, and where seen from them the light's samples lie on the plane z = 0.
 struct PointBox {

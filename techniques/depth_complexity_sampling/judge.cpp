@@ -6,6 +6,16 @@
 #include <numbers>
 
 namespace penumbra::depth_complexity {
+namespace {
+
+// Inline, where std::popcount is a call into the compiler's library on a baseline x86-64.
+std::size_t bit_count(uint64_t v) {
+  v -= v >> 1 & 0x5555555555555555U;
+  v = (v & 0x3333333333333333U) + (v >> 2 & 0x3333333333333333U);
+  return ((v + (v >> 4)) & 0x0f0f0f0f0f0f0f0fU) * 0x0101010101010101U >> 56;
+}
+
+}  // namespace
 
 void RayJudge::assign(const Light& light, const LightSamples& samples, const LightSpace& space) {
   light_ = light;
@@ -145,7 +155,7 @@ void RayJudge::write(std::size_t pixel, const uint64_t* visible) const {
   for (std::size_t w = 0; w < used_words_; ++w) {
     const std::size_t bits = std::min(columns_, left);
     const uint64_t blocked_bits = ~visible[w] & all_[w];
-    seen += static_cast<std::size_t>(std::popcount(visible[w]));
+    seen += bit_count(visible[w]);
     left -= bits;
     pending |= blocked_bits << pending_bits;
     std::size_t have = pending_bits + bits;
@@ -188,7 +198,7 @@ void RayJudge::judge(const ViewPoint* points, std::size_t count, Scratch& scratc
     segments.to_x[i] = x_[s], segments.to_y[i] = y_[s], segments.to_z[i] = z_[s];
   }
   const uint32_t blocked_bits = wanted ? blocked_segments(*hierarchy_, segments, wanted) : 0;
-  scratch.counts.rays += static_cast<uint64_t>(std::popcount(wanted));
+  scratch.counts.rays += bit_count(wanted);
   for (std::size_t i = 0; i < count; ++i) {
     uint64_t* words = scratch.candidates.words[i];
     bool is_blocked = (wanted >> i & 1) == 0 || (blocked_bits >> i & 1) != 0;

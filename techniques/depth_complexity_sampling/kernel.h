@@ -1,5 +1,6 @@
 // What the vector code (compiled once per instruction set) and the plain code around it hand to one another.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,6 +20,19 @@ struct ViewPoint {
   uint32_t pixel;
   bool across;  // the horizon may pass between the light's samples
 };
+
+// For each set of up to 8 lanes: the lanes in it, in order, and how many.
+struct PackingEntry {
+  uint8_t lane[8];
+  uint8_t count;
+};
+inline constexpr std::array<PackingEntry, 256> packing_table = [] {
+  std::array<PackingEntry, 256> table{};
+  for (unsigned bits = 0; bits < 256; ++bits)
+    for (uint8_t lane = 0; lane < 8; ++lane)
+      if (bits >> lane & 1) table[bits].lane[table[bits].count++] = lane;
+  return table;
+}();
 
 // Edges of a group, each field one array with room for 16 more than are used.
 struct EdgeList {

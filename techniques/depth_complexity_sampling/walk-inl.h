@@ -65,9 +65,9 @@ HWY_INLINE void keep_edges(const From& from, std::size_t count, bool coarse, con
     Mask keep = edges_that_matter(load, box, light, coarse);
     if (i + lanes > count) keep = hn::And(keep, hn::FirstN(d, count - i));
     if (hn::AllFalse(d, keep)) continue;
-    for (int f = 0; f < fields; ++f)
-      hn::CompressStore(load(static_cast<Field>(f)), keep, d, out.v[f].data() + out.count);
-    out.count += hn::CountTrue(d, keep);
+    const Packing packing(keep);
+    for (int f = 0; f < fields; ++f) packing.store(load(static_cast<Field>(f)), out.v[f].data() + out.count);
+    out.count += packing.count();
   }
 }
 
