@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <hwy/targets.h>
 #include <sched.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -49,6 +50,8 @@ nlohmann::json cpu() {
   return {{"model", field("/proc/cpuinfo", "model name", ':')},
           {"cores", std::thread::hardware_concurrency()},
           {"usable_cores", usable},
+          // What vector code that is chosen at run time runs as.
+          {"instruction_set", hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets())},
           {"governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")}};
 }
 
