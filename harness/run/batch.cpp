@@ -8,6 +8,7 @@
 #include "core/hash.h"
 #include "image/atomic_file.h"
 #include "run/files.h"
+#include "run/flicker.h"
 #include "run/provenance.h"
 
 namespace penumbra::run {
@@ -194,7 +195,7 @@ void BatchRunner::judge(Prepared& prepared) {
   }
   const std::span<const float> truth = converged ? converged->visibility : matched.visibility;
   if (settings_.frames > 1 && converged)
-    add_flicker(record["metrics"], point, signed_error(output.visibility, truth, evaluated));
+    add_flicker(record["metrics"], run, signed_error(output.visibility, truth, evaluated));
   record["counters"] = counters_json(output.counters);
   record["memory"] = {{"device_bytes", run.memory().device_bytes},
                       {"host_peak_bytes", run.memory().host_peak_bytes},
@@ -219,7 +220,8 @@ void BatchRunner::judge(Prepared& prepared) {
 
 // The error of each frame is kept beside the results until the sequence is finished: the next frame may be
 // another process's.
-void BatchRunner::add_flicker(nlohmann::json& metrics, const Point& point, std::span<const float> error) {
+void BatchRunner::add_flicker(nlohmann::json& metrics, PointRun& run, std::span<const float> error) {
+  const Point& point = run.point();
   metrics["flicker"] = nullptr;
   if (settings_.run_folder.empty()) return;
   const auto folder = settings_.run_folder / ".sequence";
@@ -228,7 +230,9 @@ void BatchRunner::add_flicker(nlohmann::json& metrics, const Point& point, std::
   AtomicFile out(file(point.frame));
   out.write(error.data(), error.size_bytes());
   out.commit();
-  if (point.frame > 0) metrics["flicker"] = flicker(error, read_floats(file(point.frame - 1), error.size()));
+  if (point.frame > 0)
+    metrics["flicker"] =
+        flicker(error, read_floats(file(point.frame - 1), error.size()), view_->past(run.lit()));
 }
 
 void BatchRunner::finish_group() {

@@ -38,7 +38,7 @@ class BatchRunner {
   std::optional<Prepared> prepare(const Point& point);
   std::optional<Prepared> try_prepare(const Point& point);
   void judge(Prepared& prepared);
-  void add_flicker(nlohmann::json& metrics, const Point& point, std::span<const float> error);
+  void add_flicker(nlohmann::json& metrics, PointRun& run, std::span<const float> error);
   void finish_group();
   void fail(const Point& point, const std::string& message, const Heartbeat::State& at);
   bool memory_is_short() const;

@@ -128,23 +128,4 @@ nlohmann::json converged_metrics(const Output& output, const ReferenceScene::Con
           {"zones", {{"umbra", zone(e.umbra)}, {"penumbra", zone(e.penumbra)}, {"lit", zone(e.lit)}}}};
 }
 
-std::vector<float> signed_error(std::span<const float> visibility, std::span<const float> reference,
-                                std::span<const uint8_t> evaluated) {
-  std::vector<float> error(visibility.size(), std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < error.size(); ++i)
-    if (evaluated[i]) error[i] = visibility[i] - reference[i];
-  return error;
-}
-
-nlohmann::json flicker(std::span<const float> error, std::span<const float> error_before) {
-  double sum = 0;
-  std::size_t pixels = 0;
-  for (std::size_t i = 0; i < error.size() && i < error_before.size(); ++i) {
-    if (std::isnan(error[i]) || std::isnan(error_before[i])) continue;
-    sum += std::abs(double(error[i]) - double(error_before[i]));
-    ++pixels;
-  }
-  return pixels ? nlohmann::json(sum / static_cast<double>(pixels)) : nlohmann::json();
-}
-
 }  // namespace penumbra::run

@@ -35,11 +35,4 @@ nlohmann::json converged_metrics(const Output& output, const ReferenceScene::Con
                                  std::span<const uint8_t> evaluated, const ViewSamplesHost& view,
                                  const Frame& frame);
 
-// Temporal change of the error, which is what the eye sees crawl: mean over the pixels evaluated in both
-// frames of
-// |(V - R) - (V' - R')|, V' and R' of the frame before. NaN marks pixels that are not evaluated.
-std::vector<float> signed_error(std::span<const float> visibility, std::span<const float> reference,
-                                std::span<const uint8_t> evaluated);
-nlohmann::json flicker(std::span<const float> error, std::span<const float> error_before);
-
 }  // namespace penumbra::run

@@ -55,6 +55,7 @@ class PointRun {
   const Point& point() const { return point_; }
   const TechniqueInfo& info() const { return info_; }
   const LitFrame& lit() const { return *lit_; }
+  LitFrame& lit() { return *lit_; }
   // Built anew in every frame: because the parameters say so, or because the scene or its light moves.
   bool dynamic() const { return dynamic_; }
   ReferenceOrigin origin() const;

@@ -37,6 +37,8 @@ nlohmann::json to_json(const Point& p) {
           {"light_size", p.light_size},
           {"frame", p.frame},
           {"seed", p.seed},
+          {"title", p.title},
+          {"caption", p.caption},
           {"invocation", p.invocation}};
 }
 
@@ -59,6 +61,8 @@ Point point_from_json(const nlohmann::json& j) {
   p.light_size = j.at("light_size");
   p.frame = j.at("frame");
   p.seed = j.at("seed");
+  p.title = j.at("title");
+  p.caption = j.at("caption");
   p.invocation = j.at("invocation");
   return p;
 }
@@ -78,8 +82,12 @@ nlohmann::json record_of(const Point& p) {
     params["light_pattern"] = light_pattern_names()[static_cast<std::size_t>(p.light_samples.pattern)];
   }
   for (const auto& [name, value] : p.params) params[name] = param_to_json(value);
-  return {{"id", p.id},       {"technique", p.technique}, {"scene", p.scene}, {"frame", p.frame},
-          {"params", params}, {"command", p.command()},   {"key", p.key()}};
+  nlohmann::json record = {{"id", p.id},       {"technique", p.technique}, {"scene", p.scene},
+                           {"frame", p.frame}, {"params", params},         {"command", p.command()},
+                           {"key", p.key()}};
+  if (!p.title.empty()) record["title"] = p.title;
+  if (!p.caption.empty()) record["caption"] = p.caption;
+  return record;
 }
 
 nlohmann::json record_without_result(const Point& point, std::string_view status,
@@ -92,7 +100,8 @@ nlohmann::json record_without_result(const Point& point, std::string_view status
 
 std::string sequence_key(const Point& point) {
   nlohmann::json j = to_json(point);
-  for (const char* not_of_the_sequence : {"id", "frame", "invocation"}) j.erase(not_of_the_sequence);
+  for (const char* not_of_the_sequence : {"id", "frame", "title", "caption", "invocation"})
+    j.erase(not_of_the_sequence);
   return Hasher().text(j.dump()).hex().substr(0, 16);
 }
 

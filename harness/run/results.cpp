@@ -93,6 +93,8 @@ std::string summary_id(const Point& any_frame) { return sequence_key(any_frame);
 json sequence_summary(const std::vector<json>& frames) {
   json summary;
   for (const char* key : {"technique", "scene", "params"}) summary[key] = frames.front().at(key);
+  for (const char* key : {"title", "caption"})
+    if (frames.front().contains(key)) summary[key] = frames.front()[key];
   summary["frame"] = nullptr;
   summary["frames"] = frames.size();
   const auto not_ok = std::ranges::find_if(frames, [](const json& f) { return f.at("status") != "ok"; });

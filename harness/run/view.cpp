@@ -92,6 +92,21 @@ void View::show(Frame& frame) {
   shown_ = frame.index;
 }
 
+const std::vector<PastPixels>& View::past(LitFrame& lit) {
+  if (!past_.empty()) return past_;
+  CostTimer timer(costs_, "judge");
+  const bool moved = lit.step.topology || lit.step.positions || lit.step.camera;
+  if (!lit.previous || !moved) return past_ = same_pixels(samples_->host().pixel_count());
+  show(*lit.previous);
+  ViewSamples before(passes_.device(), samples_->width(), samples_->height());
+  before.render(*lit.previous, geometry_, passes_);
+  passes_.take_times();
+  past_ = past_pixels(samples_->host(), before.host(), *lit.previous);
+  show(lit.current);
+  passes_.take_times();
+  return past_;
+}
+
 const LightSamples& View::light_samples(const LitFrame& lit, const Point& point) {
   const std::string key = samples_key(lit, point);
   auto it = light_samples_.find(key);

@@ -10,6 +10,7 @@
 #include "config/plan.h"
 #include "gpu/pass_recorder.h"
 #include "reference/reference.h"
+#include "run/flicker.h"
 #include "run/heartbeat.h"
 #include "samples/view_samples.h"
 #include "scene/scene.h"
@@ -45,6 +46,8 @@ class View {
   const MatchedReference& matched(const LitFrame& lit, const Point& point, ReferenceOrigin origin);
   const ReferenceScene::Converged& converged(const LitFrame& lit, const Point& point, ReferenceOrigin origin,
                                              int n, const std::filesystem::path& cache);
+  // Where each pixel was a frame before: made once for all techniques.
+  const std::vector<PastPixels>& past(LitFrame& lit);
   // For run.json: camera, resolution, frame, triangles, view_samples_ms and its passes, upload_ms.
   const nlohmann::json& report() const { return *report_; }
 
@@ -59,6 +62,7 @@ class View {
   std::unique_ptr<ReferenceScene> reference_;
   std::shared_ptr<LitFrame> first_;  // the reference's structure reads its geometry
   std::map<std::string, std::weak_ptr<LitFrame>> frames_;
+  std::vector<PastPixels> past_;
   std::map<std::string, LightSamples> light_samples_;
   std::map<std::string, MatchedReference> matched_;
   std::map<std::string, ReferenceScene::Converged> converged_;

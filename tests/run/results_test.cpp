@@ -146,14 +146,6 @@ TEST(GoogleBenchmark, HasOneEntryForEachSample) {
   EXPECT_TRUE(j["context"].contains("date"));
 }
 
-TEST(Flicker, IsTheMeanChangeOfTheErrorWhereBothFramesCount) {
-  const std::vector<float> v0 = {1, 0.5f, 0}, r0 = {1, 0.25f, 0}, v1 = {0.5f, 0.5f, 1}, r1 = {1, 0.25f, 0};
-  const std::vector<uint8_t> all = {1, 1, 1}, two = {1, 1, 0};
-  const auto e0 = signed_error(v0, r0, all), e1 = signed_error(v1, r1, two);
-  EXPECT_DOUBLE_EQ(flicker(e1, e0), 0.25);  // |-0.5 - 0| and |0.25 - 0.25|; the third does not count
-  EXPECT_TRUE(flicker(signed_error(v0, r0, std::vector<uint8_t>{0, 0, 0}), e1).is_null());
-}
-
 TEST(FinishOutput, SetsWhatIsNotEvaluatedAndRefusesNaN) {
   Output o;
   o.visibility = {NAN, 0.5f};
