@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <regex>
-#include <unordered_set>
+#include <unordered_map>
 
 namespace penumbra {
 namespace {
@@ -12,13 +12,34 @@ namespace {
 // The axes of one scene: the sweep's values, the scene's own where the sweep has none, the general default
 // else.
 struct SceneAxes {
-  std::vector<const Light*> lights;
-  std::vector<std::string> cameras;
   std::vector<Extent> resolutions;
   std::vector<SampleCount> samples;
   std::vector<LightPattern> patterns;
   std::vector<double> light_sizes;
 };
+
+// An entry in one scene: its own lights and cameras, or the sweep's.
+struct EntryAxes {
+  const SweepEntry* entry = nullptr;
+  std::vector<const Light*> lights;
+  std::vector<std::string> cameras;
+  std::vector<ParamValues> params;
+};
+
+template <class T>
+bool contains(const std::vector<T>& list, const T& value) {
+  return std::ranges::find(list, value) != list.end();
+}
+
+// All values that any entry has, in the order in which they come.
+template <class T>
+std::vector<T> union_of(const std::vector<EntryAxes>& entries, std::vector<T> EntryAxes::*values) {
+  std::vector<T> all;
+  for (const EntryAxes& e : entries)
+    for (const T& value : e.*values)
+      if (!contains(all, value)) all.push_back(value);
+  return all;
+}
 
 JsonNode default_node(const SceneDeclaration& scene, const std::string& axis) {
   return JsonDocument::parse(scene.axis_defaults.at(axis),
@@ -41,12 +62,13 @@ std::vector<SampleCount> sample_counts(const Sweep& sweep, const SceneDeclaratio
   return values_or_default(sweep.samples, scene, "mask_size", read_mask_size, SampleCount{});
 }
 
-std::vector<const Light*> chosen_lights(const Sweep& sweep, const SceneDeclaration& scene) {
+std::vector<const Light*> chosen_lights(const std::vector<NamedValue>& chosen,
+                                        const SceneDeclaration& scene) {
   std::vector<std::string> names;
   for (const Light& light : scene.lights) names.push_back(light.name);
-  if (sweep.lights.empty()) return {&scene.lights.front()};
+  if (chosen.empty()) return {&scene.lights.front()};
   std::vector<const Light*> lights;
-  for (const NamedValue& wanted : sweep.lights) {
+  for (const NamedValue& wanted : chosen) {
     const auto it = std::ranges::find(names, wanted.name);
     if (it == names.end())
       wanted.node.fail(fmt::format("a light of the scene '{}'", scene.name), suggestion(wanted.name, names));
@@ -55,10 +77,11 @@ std::vector<const Light*> chosen_lights(const Sweep& sweep, const SceneDeclarati
   return lights;
 }
 
-std::vector<std::string> chosen_cameras(const Sweep& sweep, const SceneDeclaration& scene) {
-  if (sweep.cameras.empty()) return {scene.cameras.front()};
+std::vector<std::string> chosen_cameras(const std::vector<NamedValue>& chosen,
+                                        const SceneDeclaration& scene) {
+  if (chosen.empty()) return {scene.cameras.front()};
   std::vector<std::string> cameras;
-  for (const NamedValue& wanted : sweep.cameras) {
+  for (const NamedValue& wanted : chosen) {
     if (std::ranges::find(scene.cameras, wanted.name) == scene.cameras.end())
       wanted.node.fail(fmt::format("a camera of the scene '{}'", scene.name),
                        suggestion(wanted.name, scene.cameras));
@@ -69,8 +92,6 @@ std::vector<std::string> chosen_cameras(const Sweep& sweep, const SceneDeclarati
 
 SceneAxes scene_axes(const Sweep& sweep, const SceneDeclaration& scene) {
   return {
-      chosen_lights(sweep, scene),
-      chosen_cameras(sweep, scene),
       values_or_default(sweep.resolutions, scene, "resolution", read_resolution, Extent{512, 512}),
       sample_counts(sweep, scene),
       values_or_default(sweep.patterns, scene, "light_pattern", read_light_pattern, LightPattern::regular),
@@ -128,9 +149,19 @@ class Expansion {
   Expansion(const Sweep& sweep, const DeclareScene& declare) : sweep_(sweep), declare_(declare) {}
 
   std::vector<Point> run() {
-    for (const NamedValue& scene : sweep_.scenes) {
+    std::vector<NamedValue> scenes;
+    const auto add = [&](const std::vector<NamedValue>& more) {
+      for (const NamedValue& scene : more)
+        if (std::ranges::none_of(scenes, [&](const NamedValue& s) { return s.name == scene.name; }))
+          scenes.push_back(scene);
+    };
+    add(sweep_.scenes);
+    for (const SweepEntry& entry : sweep_.entries) add(entry.scenes);
+    for (const NamedValue& scene : scenes) {
+      const std::vector<const SweepEntry*> entries = entries_in(scene.name);
+      if (entries.empty()) continue;
       const SceneDeclaration declaration = declared(scene);
-      expand_scene(scene.name, declaration);
+      expand_scene(scene.name, declaration, entries);
     }
     return std::move(points_);
   }
@@ -145,53 +176,72 @@ class Expansion {
     }
   }
 
-  void expand_scene(const std::string& name, const SceneDeclaration& scene) {
+  std::vector<const SweepEntry*> entries_in(const std::string& scene) const {
+    std::vector<const SweepEntry*> entries;
+    for (const SweepEntry& entry : sweep_.entries)
+      if (std::ranges::any_of(entry.scenes.empty() ? sweep_.scenes : entry.scenes,
+                              [&](const NamedValue& s) { return s.name == scene; }))
+        entries.push_back(&entry);
+    return entries;
+  }
+
+  void expand_scene(const std::string& name, const SceneDeclaration& scene,
+                    const std::vector<const SweepEntry*>& taken) {
     const SceneAxes axes = scene_axes(sweep_, scene);
-    std::vector<std::vector<ParamValues>> params;
-    for (const SweepEntry& entry : sweep_.entries) params.push_back(combinations(sweep_, entry, scene));
-    check_count(axes, params);
+    std::vector<EntryAxes> entries;
+    for (const SweepEntry* entry : taken)
+      entries.push_back({entry, chosen_lights(entry->lights.empty() ? sweep_.lights : entry->lights, scene),
+                         chosen_cameras(entry->cameras.empty() ? sweep_.cameras : entry->cameras, scene),
+                         combinations(sweep_, *entry, scene)});
+    check_count(axes, entries);
     Point p;
     p.scene = name;
     p.seed = sweep_.seed;
-    for (const std::string& camera : axes.cameras)
+    for (const std::string& camera : union_of(entries, &EntryAxes::cameras))
       for (const Extent& resolution : axes.resolutions)
         for (int frame = 0; frame < sweep_.frames; ++frame) {
           p.camera = camera, p.width = resolution.width, p.height = resolution.height, p.frame = frame;
-          expand_light(p, axes, params);
+          expand_light(p, axes, entries);
         }
   }
 
-  void expand_light(Point p, const SceneAxes& axes, const std::vector<std::vector<ParamValues>>& params) {
-    for (const Light* light : axes.lights)
+  void expand_light(Point p, const SceneAxes& axes, const std::vector<EntryAxes>& entries) {
+    for (const Light* light : union_of(entries, &EntryAxes::lights))
       for (const double size : axes.light_sizes)
         for (const SampleCount& samples : axes.samples)
           for (const LightPattern pattern : axes.patterns) {
             p.light = light->name, p.light_size = size;
             p.light_samples = {samples.width, samples.height, samples.count, pattern, sweep_.seed};
-            expand_techniques(p, *light, params);
+            for (const EntryAxes& e : entries)
+              if (contains(e.cameras, p.camera) && contains(e.lights, light)) expand_entry(p, *light, e);
           }
   }
 
-  void expand_techniques(const Point& like, const Light& light,
-                         const std::vector<std::vector<ParamValues>>& params) {
-    for (std::size_t i = 0; i < sweep_.entries.size(); ++i)
-      for (const ParamValues& values : params[i]) {
-        Point p = like;
-        p.technique = sweep_.entries[i].info->name;
-        p.sampled = sweep_.entries[i].info->sampled;
-        p.params = values;
-        drop_idle_axes(p, light);
-        p.id = point_id(p);
-        if (seen_.insert(p.id).second) points_.push_back(std::move(p));
-      }
+  void expand_entry(const Point& like, const Light& light, const EntryAxes& e) {
+    for (const ParamValues& values : e.params) {
+      Point p = like;
+      p.technique = e.entry->info->name;
+      p.sampled = e.entry->info->sampled;
+      p.params = values;
+      p.title = e.entry->title, p.caption = e.entry->caption;
+      drop_idle_axes(p, light);
+      p.id = point_id(p);
+      const auto [known, is_new] = seen_.emplace(p.id, points_.size());
+      if (is_new)
+        points_.push_back(std::move(p));
+      else if (Point& first = points_[known->second]; first.title.empty())  // named by a later entry
+        first.title = p.title, first.caption = p.caption;
+    }
   }
 
-  void check_count(const SceneAxes& axes, const std::vector<std::vector<ParamValues>>& params) {
+  void check_count(const SceneAxes& axes, const std::vector<EntryAxes>& entries) {
     double count = 0;
-    for (const auto& list : params) count += static_cast<double>(list.size());
+    for (const EntryAxes& e : entries)
+      count += static_cast<double>(e.params.size()) * static_cast<double>(e.lights.size()) *
+               static_cast<double>(e.cameras.size());
     count *= sweep_.frames;
-    for (const std::size_t n : {axes.lights.size(), axes.cameras.size(), axes.resolutions.size(),
-                                axes.samples.size(), axes.patterns.size(), axes.light_sizes.size()})
+    for (const std::size_t n :
+         {axes.resolutions.size(), axes.samples.size(), axes.patterns.size(), axes.light_sizes.size()})
       count *= static_cast<double>(n);
     bound_ += count;
     if (bound_ > static_cast<double>(limits::points))
@@ -202,7 +252,7 @@ class Expansion {
   const Sweep& sweep_;
   const DeclareScene& declare_;
   std::vector<Point> points_;
-  std::unordered_set<std::string> seen_;
+  std::unordered_map<std::string, std::size_t> seen_;  // id -> index of the point
   double bound_ = 0;
 };
 

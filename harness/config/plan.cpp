@@ -77,8 +77,15 @@ json expanded(const Sweep& sweep) {
     out["light_pattern"].push_back(light_pattern_names()[static_cast<std::size_t>(p)]);
   for (const double size : sweep.light_sizes) out["light_size"].push_back(size);
   out.update(params_to_json(sweep.axes));
-  for (const SweepEntry& entry : sweep.entries)
-    out["techniques"].push_back({{"technique", entry.info->name}, {"params", params_to_json(entry.params)}});
+  for (const SweepEntry& entry : sweep.entries) {
+    json one = {{"technique", entry.info->name}, {"params", params_to_json(entry.params)}};
+    if (!entry.scenes.empty()) one["scene"] = names_to_json(entry.scenes);
+    if (!entry.lights.empty()) one["light"] = names_to_json(entry.lights);
+    if (!entry.cameras.empty()) one["camera"] = names_to_json(entry.cameras);
+    if (!entry.title.empty()) one["title"] = entry.title;
+    if (!entry.caption.empty()) one["caption"] = entry.caption;
+    out["techniques"].push_back(one);
+  }
   return out;
 }
 

@@ -34,7 +34,9 @@ struct Point {
   double light_size = -1;  // < 0: the scene's own
   int frame = 0;
   uint32_t seed = 1;
-  std::string invocation;  // not part of the id: "penumbra run CONFIG --set ...", shell-quoted
+  // Not part of the id:
+  std::string title, caption;  // the config entry's, for the report's gallery
+  std::string invocation;      // "penumbra run CONFIG --set ...", shell-quoted
 
   std::string key() const;      // technique/scene/key=value,... as --filter sees it; unique in a plan
   std::string command() const;  // the exact command line that runs this point alone

@@ -63,7 +63,15 @@ json param_axis(const ParamInfo& info) {
 json technique_entry(const TechniqueInfo& info) {
   json params = json::object();
   for (const ParamInfo& p : info.params) params[p.name] = param_axis(p);
-  json out = object({{"technique", {{"const", info.name}}}, {"params", object(params)}}, {"technique"});
+  json out =
+      object({{"technique", {{"const", info.name}}},
+              {"params", object(params)},
+              {"scene", axis(name(), "Scenes of this entry alone, in place of the sweep's.")},
+              {"light", axis(name(), "Lights of this entry alone, in place of the sweep's.")},
+              {"camera", axis(name(), "Cameras of this entry alone, in place of the sweep's.")},
+              {"title", {{"type", "string"}, {"description", "Heading in the report's gallery."}}},
+              {"caption", {{"type", "string"}, {"description", "What there is to see, in a sentence."}}}},
+             {"technique"});
   out["description"] = info.title;
   return out;
 }

@@ -52,11 +52,19 @@ SweepEntry read_entry(const JsonNode& node, const Registry& registry) {
   for (const TechniqueInfo& info : registry) names.push_back(info.name);
   if (!node.is_object() && !node.is_string())
     node.fail("a technique's name, or {\"technique\": name, \"params\": {...}}");
-  if (node.is_object()) node.allow_only({"technique", "params"}, "an entry of techniques");
+  if (node.is_object())
+    node.allow_only({"technique", "params", "scene", "light", "camera", "title", "caption"},
+                    "an entry of techniques");
   const JsonNode name = node.is_object() ? node.require("technique", "an entry of techniques") : node;
   SweepEntry entry;
   entry.info = &find_technique(registry, name.choice(names, "a technique"));
-  const auto params = node.is_object() ? node.find("params") : std::nullopt;
+  if (!node.is_object()) return entry;
+  read_axis(node, "scene", entry.scenes, read_name);
+  read_axis(node, "light", entry.lights, read_name);
+  read_axis(node, "camera", entry.cameras, read_name);
+  if (const auto title = node.find("title")) entry.title = title->string();
+  if (const auto caption = node.find("caption")) entry.caption = caption->string();
+  const auto params = node.find("params");
   if (!params) return entry;
   std::vector<std::string> known;
   for (const ParamInfo& p : entry.info->params) known.push_back(p.name);

@@ -32,6 +32,8 @@ using ParamAxes = std::map<std::string, std::vector<ParamValue>>;
 struct SweepEntry {
   const TechniqueInfo* info = nullptr;
   ParamAxes params;
+  std::vector<NamedValue> scenes, lights, cameras;  // in place of the sweep's; empty: the sweep's
+  std::string title, caption;                       // how the report's gallery names and explains it
 };
 
 // Axes without values are left to the scene.

@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{R"({"scene": "area", "techniques": [{"name": "gears"}]})",
                   "c.json:1:35: /techniques/0/name: found the key \"name\", expected a key of an entry of "
                   "techniques."
-                  " Valid: technique, params."},
+                  " Valid: technique, params, scene, light, camera, title, caption."},
         BadConfig{R"({"scene": "aera", "techniques": ["gears"]})",
                   "c.json:1:11: /scene: unknown scene 'aera'."},
         BadConfig{R"({"scene": 3, "techniques": ["gears"]})",

@@ -71,6 +71,32 @@ TEST(Expansion, DuplicatesAreMerged) {
             1u);
 }
 
+TEST(Expansion, AnEntryMayHaveScenesLightsAndCamerasOfItsOwn) {
+  const auto points = expand_text(R"({"scene": "area", "light": "key", "techniques": ["gears",
+    {"technique": "shadow_map", "scene": ["lamp", "area"], "light": "spark", "camera": "front", "title": "Acne", "caption": "Dots."},
+    {"technique": "ray_tracing", "camera": ["front", "side"]}]})");
+  ASSERT_EQ(points.size(), 5u);
+  std::set<std::string> seen;
+  for (const Point& p : points) {
+    seen.insert(p.technique + " " + p.scene + " " + p.light + " " + p.camera);
+    EXPECT_EQ(p.title, p.technique == "shadow_map" ? "Acne" : "");
+    EXPECT_EQ(p.caption, p.technique == "shadow_map" ? "Dots." : "");
+  }
+  EXPECT_EQ(seen, (std::set<std::string>{"gears area key front", "shadow_map area spark front",
+                                         "ray_tracing area key front", "ray_tracing area key side",
+                                         "shadow_map lamp spark front"}));
+  // Points of one view stay together.
+  EXPECT_EQ(points.back().scene, "lamp");
+  EXPECT_EQ(points[3].camera, "side");
+}
+
+TEST(Expansion, APointThatALaterEntryNamesTakesItsName) {
+  const auto points = expand_text(R"({"scene": "area", "techniques": ["gears",
+    {"technique": "gears", "title": "Exact"}, {"technique": "gears", "title": "Late"}]})");
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_EQ(points[0].title, "Exact");
+}
+
 TEST(Expansion, MaskSizeAndLightSamplesAreOneAxis) {
   const auto points = expand_text(
       R"({"scene": "area", "mask_size": [4, 8], "light_samples": [12, 48], "techniques": ["ray_tracing"]})");
