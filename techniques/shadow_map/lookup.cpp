@@ -33,17 +33,18 @@ std::vector<Vec2f> disc_points(int count) {
 }
 
 void Lookup::setup(gpu::Device& device, bool round_light, gpu::PassRecorder& passes) {
-  const auto size = static_cast<uint32_t>(params_.map_size);
   if (params_.filterable()) {
     std::vector<gpu::Specialization> constants = moment_constants(params_);
-    constants.push_back({0, size});
     constants.push_back({1, 0});
     frustum_ = gpu::ComputePipeline(device, shadow_map_lookup_moments_spv, sizeof(LookupPush), constants);
     constants.back().value = 1;
     faces_ = gpu::ComputePipeline(device, shadow_map_lookup_moments_spv, sizeof(LookupPush), constants);
+    if (params_.moment_levels() > 1)
+      camera_ = gpu::Buffer(device, 3 * sizeof(Vec4f), gpu::Memory::upload, "shadow map camera");
     return;
   }
   const bool disc = params_.pcf_pattern == PcfPattern::poisson, soft = params_.filter == Filter::pcss;
+  const auto size = static_cast<uint32_t>(params_.map_size);
   const std::array images{gpu::ImageUse::sampled_nearest};
   const auto make = [&](bool faces) {
     const std::array<gpu::Specialization, 9> constants{
@@ -64,6 +65,19 @@ void Lookup::setup(gpu::Device& device, bool round_light, gpu::PassRecorder& pas
   gpu::upload(passes, "upload_disc", disc_, points.data(), points.size() * sizeof(Vec2f));
 }
 
+// Where pixels are, for footprint() of layer.glsl.
+void Lookup::tell_camera(const Case& c) {
+  const Camera& camera = c.frame->camera;
+  const auto step = [&](double x, double y) {
+    const Vec3d d =
+        camera.ray_direction(x, y, c.width, c.height) - camera.ray_direction(0, 0, c.width, c.height);
+    return Vec4f{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z), 0};
+  };
+  const std::span<Vec4f> out = camera_.view<Vec4f>();
+  out[0] = {camera.eye.x, camera.eye.y, camera.eye.z, 1};
+  out[1] = step(1, 0), out[2] = step(0, 1);
+}
+
 void Lookup::run(const RenderInput& in, const Fitted& fitted, const DepthMaps& maps,
                  const MomentMaps& moments, gpu::PassRecorder& passes) {
   const ViewSamples& samples = *in.view_samples;
@@ -80,6 +94,10 @@ void Lookup::run(const RenderInput& in, const Fitted& fitted, const DepthMaps& m
   push.layers = maps.layers().address(), push.disc = disc_.address(),
   push.moments = moments.moments().address();
   push.visibility = in.device.visibility->address();
+  if (camera_) tell_camera(*in.scene_case), push.camera = camera_.address();
+  push.max_probes = params_.moment_filtering == MomentFiltering::anisotropic
+                        ? static_cast<uint32_t>(params_.max_anisotropy)
+                        : 1;
   push.count = count, push.layer_count = static_cast<uint32_t>(fitted.layers.size());
   push.constant_bias = params_.constant_bias * in.scene_case->frame->geometry.bounds.diagonal();
   push.bleeding_reduction = params_.bleeding_reduction;

@@ -17,12 +17,13 @@ class Lookup {
   // Pass "lookup".
   void run(const RenderInput& in, const Fitted& fitted, const DepthMaps& maps, const MomentMaps& moments,
            gpu::PassRecorder& passes);
-  uint64_t bytes() const { return disc_.bytes(); }
+  uint64_t bytes() const { return disc_.bytes() + camera_.bytes(); }
 
  private:
+  void tell_camera(const Case& c);
   Params params_;
   gpu::ComputePipeline frustum_, faces_;
-  gpu::Buffer disc_;
+  gpu::Buffer disc_, camera_;
 };
 
 }  // namespace penumbra::shadow_map

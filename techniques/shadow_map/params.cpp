@@ -40,6 +40,14 @@ void add_filters(ParamTable<Params>& t) {
   t.choice("blur", &Params::blur, {"box", "gaussian"},
            {"", "", "weights of that blur; the Gaussian's standard deviation is a quarter of filter_size"});
   t.choice(
+      "moment_filtering", &Params::moment_filtering, {"bilinear", "trilinear", "anisotropic"},
+      {"", "",
+       "how a filterable map is read: between four texels, or from a mip chain by the pixel's footprint, "
+       "round or along its longer axis"});
+  t.integer("max_anisotropy", &Params::max_anisotropy, 2, 16,
+            {"probes", "", "most probes along that axis (anisotropic)"})
+      .cost();
+  t.choice(
       "moment_format", &Params::moment_format, {"float32", "bits16"},
       {"", "", "each moment: a float; or a half (vsm, evsm), 16 bits with the optimised quantisation (msm)"});
   t.number("bleeding_reduction", &Params::bleeding_reduction, 0, 0.99,

@@ -1,5 +1,7 @@
 // What shadow_map can be told. Meaning, unit and range of each field stand in params.cpp, once.
 #pragma once
+#include <bit>
+
 #include "technique/params.h"
 
 namespace penumbra::shadow_map {
@@ -13,6 +15,7 @@ enum class Split { uniform, log, practical };
 enum class Filter { pcf, pcss, vsm, evsm, msm };
 enum class Blur { box, gaussian };
 enum class MomentFormat { float32, bits16 };
+enum class MomentFiltering { bilinear, trilinear, anisotropic };
 
 struct Params {
   int map_size = 1024;
@@ -38,6 +41,8 @@ struct Params {
   float pcss_border = 0.125f;
   int filter_size = 5;
   Blur blur = Blur::box;
+  MomentFiltering moment_filtering = MomentFiltering::bilinear;
+  int max_anisotropy = 16;
   MomentFormat moment_format = MomentFormat::float32;
   float bleeding_reduction = 0.2f;
   float min_variance = 1e-6f;
@@ -46,6 +51,11 @@ struct Params {
   float moment_bias = 1e-5f;
 
   bool filterable() const { return filter == Filter::vsm || filter == Filter::evsm || filter == Filter::msm; }
+  // Levels of a filterable map: each half as wide as the one before, down to one texel.
+  int moment_levels() const {
+    if (!filterable() || moment_filtering == MomentFiltering::bilinear) return 1;
+    return std::bit_width(static_cast<unsigned>(map_size));
+  }
   // Texels added around what is fitted, so that taps at its edge find depths.
   double border_texels() const {
     if (filter == Filter::pcss) return double(pcss_border) * map_size + 1;

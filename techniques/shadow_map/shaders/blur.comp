@@ -24,8 +24,8 @@ void main() {
     const ivec2 at = clamp(texel + (vertical ? ivec2(0, offset) : ivec2(offset, 0)), ivec2(0), ivec2(map_size - 1));
     const float x = (float(t) - 0.5 * float(taps - 1)) / (0.25 * float(taps));
     const float weight = gaussian ? exp(-0.5 * x * x) : 1.0;
-    sum += weight * stored_moments(push.from, (push.layer * map_size + at.y) * map_size + at.x);
+    sum += weight * stored_moments(push.from, push.layer * layer_texels + at.y * map_size + at.x);
     weights += weight;
   }
-  store_as_stored(push.to, push.layer * map_size * map_size + i, sum / weights);
+  store_as_stored(push.to, push.layer * layer_texels + i, sum / weights);
 }

@@ -12,6 +12,26 @@ uint layer_of(float view_depth, vec3 from_light) {
   return layer;
 }
 
+// A pixel's step to the right and downwards, in texels: derivatives along the receiver's plane, exact also where
+// neighbouring pixels show something else.
+mat2 footprint(uint layer, vec3 point, vec3 normal, float view_depth) {
+  const vec3 along = (point - push.camera.at[0].xyz) / view_depth;
+  const float facing = min(dot(normal, along), -1e-6);   // normals face the viewer
+  const vec4 clip = push.layers.at[layer].clip_from_world * vec4(point, 1);
+  const vec2 ndc = clip.xy / clip.w;
+  const vec4 log_warp = push.layers.at[layer].log_warp;
+  mat2 texels;
+  for (int i = 0; i < 2; ++i) {
+    const vec3 at_unit_depth = push.camera.at[1 + i].xyz;
+    const vec3 on_plane = view_depth * (at_unit_depth - along * (dot(normal, at_unit_depth) / facing));
+    const vec4 moved = push.layers.at[layer].clip_from_world * vec4(on_plane, 0);
+    texels[i] = (moved.xy - ndc * moved.w) / clip.w;
+    if (log_warp.x != 0) texels[i].y *= -log_warp.x / ndc.y;   // dy' / dy of y' = s log(-1 / y) + o
+    texels[i] *= 0.5 * map_size;
+  }
+  return texels;
+}
+
 struct Receiver {
   uint layer;
   vec2 texel;    // continuous texel coordinates: texel i covers [i, i + 1)

@@ -17,5 +17,5 @@ void main() {
   const ivec2 texel = ivec2(i % map_size, i / map_size);
   const float linear = linear_depth(layer, vec2(texel) + 0.5, depth_at(texel, push.layer));
   const float depth = clamp((linear - layer.range.z) / (layer.range.w - layer.range.z), 0, 1);
-  store_moments(push.to, push.layer * map_size * map_size + i, moments_of(depth));
+  store_moments(push.to, push.layer * layer_texels + i, moments_of(depth));
 }

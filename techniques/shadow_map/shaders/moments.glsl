@@ -6,6 +6,17 @@ layout(constant_id = 10) const int filter_kind = 2;
 layout(constant_id = 11) const bool sixteen_bits = false;
 layout(constant_id = 12) const float positive_exponent = 40;
 layout(constant_id = 13) const float negative_exponent = 5;
+layout(constant_id = 14) const uint layer_texels = 1024 * 1024;   // all levels of a layer
+layout(constant_id = 15) const int levels = 1;
+
+// Levels of a layer's mip chain lie one behind the other, each half as wide (rounded down), down to one texel.
+uint level_size(int level) { return max(uint(map_size) >> level, 1u); }
+
+uint level_start(int level) {
+  uint start = 0;
+  for (int l = 0; l < level; ++l) start += level_size(l) * level_size(l);
+  return start;
+}
 
 const uint moment_count = filter_kind == vsm ? 2 : 4;
 const uint moment_words = sixteen_bits ? moment_count / 2 : moment_count;

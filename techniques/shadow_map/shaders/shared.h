@@ -78,26 +78,27 @@ struct LookupPush {
   ADDRESS_OF(Vec2Array) disc;       // percentage-closer filters
   ADDRESS_OF(UintArray) moments;    // filterable maps
   ADDRESS_OF(FloatArray) visibility;
+  ADDRESS_OF(Vec4Array) camera;     // filterable maps with levels: the eye, and a pixel's step right and down at unit depth
   uint count;             // pixels
   uint layer_count;
   float constant_bias;    // scene units
   float bleeding_reduction;
   float variance_or_bias; // min_variance, or moment_bias
-  float unused;
+  uint max_probes;        // 1: no anisotropic filtering
 };
 
 struct MomentsPush {
   ADDRESS_OF(LayerArray) layers;
-  ADDRESS_OF(UintArray) from;   // blur alone
+  ADDRESS_OF(UintArray) from;   // blur and halve_moments alone
   ADDRESS_OF(UintArray) to;
   uint layer;
-  uint unused;
+  uint level;                   // made by halve_moments
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(MapLayer) == 224 && sizeof(FitQuery) == 112 && sizeof(SampleBounds) == 48);
 static_assert(sizeof(FitPush) == 40 && sizeof(DepthPush) == 64 && sizeof(LogDepthPush) == 96);
-static_assert(sizeof(LookupPush) == 112 && sizeof(MomentsPush) == 32);
+static_assert(sizeof(LookupPush) == 120 && sizeof(MomentsPush) == 32);
 }  // namespace penumbra::shadow_map
 #endif
 #endif
