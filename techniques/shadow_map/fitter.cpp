@@ -94,8 +94,11 @@ void Fitter::aim(const Case& c) {
   const Box& box = tight ? sample_box_ : c.frame->geometry.bounds;
   const Vec3d forward =
       may_need_faces(fitted_.light) ? Vec3d(box.center()) - fitted_.light.towards.xyz() : fitted_.light.axis;
-  fitted_.splits = split_depths(params_.cascade_split, double(params_.cascade_lambda), params_.cascades,
-                                view_lo_, view_hi_);
+  // Nor may stable ranges follow every sample that comes nearer or goes farther.
+  const double lo = tight ? view_lo_ : 1 / rounded_up(1 / view_lo_);
+  const double hi = tight ? view_hi_ : rounded_up(view_hi_);
+  fitted_.splits =
+      split_depths(params_.cascade_split, double(params_.cascade_lambda), params_.cascades, lo, hi);
   for (std::size_t i = 0; i + 1 < fitted_.splits.size(); ++i) {
     add_layer(light_frame(forward, tight ? c.frame->camera.basis().forward : fixed_hint));
     FittedLayer& layer = fitted_.layers.back();

@@ -25,8 +25,6 @@ void pad(double& lo, double& hi, double relative, double least) {
   hi = std::max(hi, middle + 0.5 * size) + relative * size;
 }
 
-double rounded_up(double size) { return std::exp2(std::ceil(4 * std::log2(size)) / 4); }
-
 }  // namespace
 
 Mat4d light_from_world(const LightPoint& light, const LightFrame& frame) {
@@ -72,6 +70,8 @@ Mat4d crop(const Extent& e, double map_size, double border, double least_depth) 
   m[3][2] = -p.lo.z * m[2][2];
   return m;
 }
+
+double rounded_up(double size) { return std::exp2(std::ceil(4 * std::log2(size)) / 4); }
 
 Extent snapped(const Extent& e, double map_size, double border) {
   Extent s = e;

@@ -37,6 +37,9 @@ double inner_share(double map_size, double border);
 // closer together than `least_depth` are given that much room.
 Mat4d crop(const Extent& e, double map_size, double border, double least_depth);
 
+// To a power of 2^(1/4): what is rounded so seldom changes.
+double rounded_up(double size);
+
 // The extent with sizes in x and y rounded up to powers of 2^(1/4) (of the unit of light space) and its
 // corner moved to a whole texel of that size: texels keep their places while what they cover moves [Valient
 // 2008; Engel 2006].
