@@ -71,7 +71,7 @@ def plot_axis(options, points, axis, swept, value, spread, label, styles):
         (line,) = axes.plot(
             x,
             [value(p) for p in group],
-            DASHES[number % len(DASHES)],
+            linestyle=DASHES[number % len(DASHES)],
             color=style["colour"],
             marker=MARKERS[style["marker"]],
             linewidth=line_width,

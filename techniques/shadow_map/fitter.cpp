@@ -21,6 +21,16 @@ void for_each_corner(const Box& box, F&& f) {
     f(Vec3d(Vec3f{i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z}));
 }
 
+// Towards the middle of what a box spans as seen from a point: of a long box near by, its centre is far from
+// that.
+Vec3d middle_direction(Vec3d from, const Box& box) {
+  Vec3d sum{};
+  for_each_corner(box, [&](Vec3d p) {
+    if (const double d = length(p - from); d > 0) sum += (p - from) / d;
+  });
+  return length(sum) > 0.5 ? sum : Vec3d(box.center()) - from;
+}
+
 }  // namespace
 
 void Fitter::setup(gpu::Device& device) {
@@ -93,7 +103,7 @@ void Fitter::aim(const Case& c) {
   const bool tight = params_.fit == Fit::tight;
   const Box& box = tight ? sample_box_ : c.frame->geometry.bounds;
   const Vec3d forward =
-      may_need_faces(fitted_.light) ? Vec3d(box.center()) - fitted_.light.towards.xyz() : fitted_.light.axis;
+      may_need_faces(fitted_.light) ? middle_direction(fitted_.light.towards.xyz(), box) : fitted_.light.axis;
   // Nor may stable ranges follow every sample that comes nearer or goes farther.
   const double lo = tight ? view_lo_ : 1 / rounded_up(1 / view_lo_);
   const double hi = tight ? view_hi_ : rounded_up(view_hi_);

@@ -95,6 +95,13 @@ inline gpu::Device& device() {
   return d;
 }
 
+// A bias that is right for these scenes and unfiltered maps.
+inline ParamValues unfiltered(std::initializer_list<ParamValues::value_type> more = {}) {
+  ParamValues v{{"pcf_kernel", int64_t{1}}, {"slope_bias", 1.5}, {"constant_bias", 2e-5}};
+  for (const auto& m : more) v[m.first] = m.second;
+  return v;
+}
+
 struct Rendered {
   std::vector<float> visibility;
   Counters counters;

@@ -1,22 +1,14 @@
-// The depth map and percentage-closer filtering against Embree and closed forms.
+// The depth map and its fit against Embree and closed forms.
 #include <cstring>
 
 #include "shadow_map_scenes.h"
 #include "techniques/shadow_map/counters.h"
-#include "techniques/shadow_map/lookup.h"
 #include "tests/support/brute_force.h"
 
 namespace penumbra::test {
 namespace {
 
 constexpr int width = 161, height = 119;  // odd and not square
-
-// A bias that is right for these scenes and unfiltered maps.
-ParamValues plain(std::initializer_list<ParamValues::value_type> more = {}) {
-  ParamValues v{{"pcf_kernel", int64_t{1}}, {"slope_bias", 1.5}, {"constant_bias", 2e-5}};
-  for (const auto& m : more) v[m.first] = m.second;
-  return v;
-}
 
 class EachLight : public ::testing::TestWithParam<Light> {};
 
@@ -33,7 +25,7 @@ TEST_P(EachLight, ErrorFallsAsTheMapGrows) {
   Stage stage(box_and_sphere(GetParam()), width, height);
   double before = 1;
   for (int64_t size : {32, 128, 512}) {
-    const double e = stage.error(stage.render(plain({{"map_size", size}})));
+    const double e = stage.error(stage.render(unfiltered({{"map_size", size}})));
     EXPECT_LT(e, 0.6 * before) << size;
     before = e;
   }
@@ -48,8 +40,8 @@ TEST_P(EachLight, TightFitBeatsNone) {
   Stage stage(std::move(f), width, height);
   double tight = 0, none = 0;  // over several sizes: one may happen to meet the edges well
   for (int64_t size : {40, 57, 80, 113}) {
-    const Rendered a = stage.render(plain({{"map_size", size}}));
-    const Rendered b = stage.render(plain({{"map_size", size}, {"fit", "none"}}));
+    const Rendered a = stage.render(unfiltered({{"map_size", size}}));
+    const Rendered b = stage.render(unfiltered({{"map_size", size}, {"fit", "none"}}));
     EXPECT_LT(number(a.counters, "texel_to_pixel_median"), number(b.counters, "texel_to_pixel_median"));
     tight += stage.error(a), none += stage.error(b);
   }
@@ -58,7 +50,7 @@ TEST_P(EachLight, TightFitBeatsNone) {
 
 TEST_P(EachLight, StableFitIsRightToo) {
   Stage stage(box_and_sphere(GetParam()), width, height);
-  EXPECT_LT(stage.error(stage.render(plain({{"map_size", int64_t{2048}}, {"fit", "stable"}}))), 0.006);
+  EXPECT_LT(stage.error(stage.render(unfiltered({{"map_size", int64_t{2048}}, {"fit", "stable"}}))), 0.006);
 }
 
 // Where an unfiltered map differs from the truth, the segment to the light passes an edge of a caster within
@@ -67,7 +59,7 @@ TEST_P(EachLight, StableFitIsRightToo) {
 TEST_P(EachLight, DiffersOnlyWithinTexelAndBiasOfAnEdge) {
   Stage stage(box_and_sphere(GetParam()), width, height);
   const double slope_bias = 1.5, constant_bias = 2e-5 * double(stage.frame.geometry.bounds.diagonal());
-  const ParamValues given = plain({{"map_size", int64_t{256}}});
+  const ParamValues given = unfiltered({{"map_size", int64_t{256}}});
   const Rendered r = stage.render(given);
   const shadow_map::Fitted fitted = stage.fit(given);
   const testing::BruteForce truth(stage.frame.geometry);
@@ -89,7 +81,7 @@ TEST_P(EachLight, DiffersOnlyWithinTexelAndBiasOfAnEdge) {
           texel, w * std::max(l.extent.hi.x - l.extent.lo.x, l.extent.hi.y - l.extent.lo.y) / (256 - 3));
     }
     const double reach = (std::numbers::sqrt2 / 2 + slope_bias) * texel + constant_bias;
-    const testing::Tie tie = truth.explain(p, fitted.light.towards, no_triangle, reach);
+    const testing::Tie tie = truth.exunfiltered(p, fitted.light.towards, no_triangle, reach);
     EXPECT_LE(tie.distance, reach) << i << (tie.blocked ? " blocked" : " lit");
   }
   EXPECT_GT(differing, 3);
@@ -114,7 +106,7 @@ TEST_P(EachLight, StableFitKeepsItsTexelsWhileTheCameraMoves) {
     const auto texels = [&](const char* fit) {
       std::vector<Vec2d> at;
       for (const shadow_map::FittedLayer& l :
-           stage.fit(plain({{"map_size", int64_t{256}}, {"fit", fit}})).layers) {
+           stage.fit(unfiltered({{"map_size", int64_t{256}}, {"fit", fit}})).layers) {
         const Vec3d m = shadow_map::map_point(l, fixed);
         if (l.used && std::isfinite(m.x)) at.push_back({128 * m.x, 128 * m.y});
       }
@@ -133,14 +125,14 @@ TEST_P(EachLight, StableFitKeepsItsTexelsWhileTheCameraMoves) {
 
 TEST(ShadowMap, LightAmongTheViewSamplesTakesSixFaces) {
   Stage inside(box_and_sphere(point_light({0, 1.5f, 0.9f})), width, height);
-  EXPECT_EQ(number(inside.render(plain()).counters, "six_faces"), 1);
+  EXPECT_EQ(number(inside.render(unfiltered()).counters, "six_faces"), 1);
   Stage outside(box_and_sphere(point_light({1, 5, 2})), width, height);
-  EXPECT_EQ(number(outside.render(plain()).counters, "six_faces"), 0);
+  EXPECT_EQ(number(outside.render(unfiltered()).counters, "six_faces"), 0);
 }
 
 TEST(ShadowMap, UnfilteredLookupIsTheComparisonWithTheNearestTexel) {
   Stage stage(box_and_sphere(point_light({1, 5, 2})), width, height);
-  const ParamValues given = plain({{"map_size", int64_t{333}}});
+  const ParamValues given = unfiltered({{"map_size", int64_t{333}}});
   const shadow_map::Params params = stage.params(given);
   shadow_map::Fitter fitter(params);
   shadow_map::DepthMaps maps(params);
@@ -178,34 +170,6 @@ TEST(ShadowMap, UnfilteredLookupIsTheComparisonWithTheNearestTexel) {
   EXPECT_LT(ties, compared / 20);
 }
 
-// A kernel is the mean of its taps: the k x k filter of a map equals the mean of unfiltered lookups of
-// receivers moved by whole texels, hence takes k * k + 1 values and turns a straight edge into a ramp k
-// texels wide.
-TEST(ShadowMap, KernelTurnsAnEdgeIntoARampAsWideAsItself) {
-  Frame f;
-  add_ground(f.geometry, 2);
-  add_quad(f.geometry, {-2, 1, 2}, {2, 0, 0}, {0, 0, -4});  // covers x < 0
-  f.light = directional_light({0, -1, 0});
-  f.camera.eye = {0.1f, 0.9f, 0.01f}, f.camera.target = {0.1f, 0, 0}, f.camera.vertical_fov_degrees = 50;
-  Stage stage(std::move(f), 127, 63);
-  for (int64_t k : {3, 7}) {
-    // An axis-aligned map (stable fit's frame does not turn with the camera).
-    const Rendered r = stage.render({{"pcf_kernel", k}, {"map_size", int64_t{64}}, {"fit", "none"}});
-    const double texel = 4 / (64 - 2 * (0.5 * double(k) + 1));
-    const ViewSamplesHost& view = stage.view.host();
-    int levels = 0;
-    for (std::size_t i = 0; i < stage.pixels(); ++i) {
-      if (!stage.reference().evaluated[i] || view.position[i].y > 0.5f) continue;
-      const double x = view.position[i].x, v = double(r.visibility[i]);
-      EXPECT_NEAR(v * double(k), std::round(v * double(k)), 1e-5);
-      // Nearest texel centres are at most half a texel off, at the edge and at the receiver.
-      EXPECT_NEAR(v, std::clamp(0.5 + x / (double(k) * texel), 0.0, 1.0), 1.001 / double(k)) << x;
-      levels += v > 0 && v < 1;
-    }
-    EXPECT_GT(levels, 100);
-  }
-}
-
 TEST(ShadowMap, EdgeOfABoxFallsWithinATexel) {
   Frame f;
   add_ground(f.geometry, 2);
@@ -213,7 +177,7 @@ TEST(ShadowMap, EdgeOfABoxFallsWithinATexel) {
   f.light = point_light({0, 4, 0});
   f.camera.eye = {3, 1.0f, 0.01f}, f.camera.target = {0.5f, 0, 0};
   Stage stage(std::move(f), width, height);
-  const Rendered r = stage.render(plain({{"map_size", int64_t{512}}, {"fit", "none"}}));
+  const Rendered r = stage.render(unfiltered({{"map_size", int64_t{512}}, {"fit", "none"}}));
   // The box's top edge at (0.5, 0.75) throws its shadow to 0.5 * 4 / 3.25.
   const double edge = 0.5 * 4 / (4 - 0.75);
   // Frustum of the scene's bounds from the light: |x / w| <= 2 / (4 - 0.75), the box's corners do not reach
@@ -232,124 +196,6 @@ TEST(ShadowMap, EdgeOfABoxFallsWithinATexel) {
   EXPECT_GT(near_edge, 3);
 }
 
-TEST(ShadowMap, CasterFacesAreThoseTowardsOrAwayFromTheLight) {
-  for (const bool towards : {true, false}) {
-    Frame f;
-    add_ground(f.geometry, 2);
-    if (towards)
-      add_quad(f.geometry, {-0.5f, 1, 0.5f}, {1, 0, 0}, {0, 0, -1});  // normal up
-    else
-      add_quad(f.geometry, {-0.5f, 1, 0.5f}, {0, 0, -1}, {1, 0, 0});
-    f.light = point_light({0, 3, 0});
-    f.camera.eye = {0, 0.7f, 3}, f.camera.target = {0, 0, 0};
-    Stage stage(std::move(f), width, height);
-    const double right = towards ? stage.error(stage.render(plain({{"caster_faces", "front"}})))
-                                 : stage.error(stage.render(plain({{"caster_faces", "back"}})));
-    const double wrong = towards ? stage.error(stage.render(plain({{"caster_faces", "back"}})))
-                                 : stage.error(stage.render(plain({{"caster_faces", "front"}})));
-    EXPECT_LT(right, 0.01);
-    EXPECT_GT(wrong, 0.05);
-  }
-}
-
-TEST(ShadowMap, BackFacesNeedNoSlopeBiasOnClosedMeshes) {
-  Stage stage(box_and_sphere(point_light({1, 5, 2})), width, height);
-  const auto error = [&](const char* faces) {
-    return stage.error(stage.render({{"pcf_kernel", int64_t{1}},
-                                     {"slope_bias", 0.0},
-                                     {"constant_bias", 0.0},
-                                     {"caster_faces", faces},
-                                     {"map_size", int64_t{1024}}}));
-  };
-  EXPECT_GT(error("front"), 0.1);  // acne
-  EXPECT_LT(error("back"), 0.5 * error("front"));
-}
-
-// Slope bias of one texel is what planar receivers need, as the parameter's description says.
-TEST(ShadowMap, SlopeBiasOfOneTexelEndsAcneOnPlanes) {
-  Frame f;
-  add_ground(f.geometry, 2);
-  f.light = directional_light({-1, -0.35f, -0.4f});
-  f.camera.eye = {0.3f, 2, 3}, f.camera.target = {0, 0, 0};
-  Stage stage(std::move(f), width, height);
-  const auto error = [&](double slope) {
-    return stage.error(stage.render({{"pcf_kernel", int64_t{1}},
-                                     {"slope_bias", slope},
-                                     {"constant_bias", 1e-6},
-                                     {"map_size", int64_t{128}}}));
-  };
-  EXPECT_GT(error(0), 0.2);
-  EXPECT_EQ(error(1), 0);
-}
-
-TEST(ShadowMap, ReceiverPlaneBiasEndsAcneOfWideKernels) {
-  Frame f;
-  add_ground(f.geometry, 2);
-  f.light = directional_light({-1, -0.35f, -0.4f});
-  f.camera.eye = {0.3f, 2, 3}, f.camera.target = {0, 0, 0};
-  Stage stage(std::move(f), width, height);
-  for (const char* pattern : {"grid", "poisson"}) {
-    const ParamValues given{{"pcf_kernel", int64_t{9}},
-                            {"slope_bias", 0.0},
-                            {"constant_bias", 2e-5},
-                            {"map_size", int64_t{128}},
-                            {"pcf_pattern", pattern}};
-    EXPECT_GT(stage.error(stage.render(given)), 0.1);
-    ParamValues with = given;
-    with["receiver_plane_bias"] = true;
-    EXPECT_LT(stage.error(stage.render(with)), 1e-3);
-  }
-}
-
-TEST(ShadowMap, CoarserDepthFormatsAreWorseUnderALowBias) {
-  Frame f = box_and_sphere(directional_light({-0.010f, -1, 0.013f}));
-  add_quad(f.geometry, {6, -90, 6}, {1, 0, 0}, {0, 0, 1});  // a long depth range
-  Stage stage(std::move(f), width, height);
-  const auto error = [&](const char* format) {
-    return stage.error(stage.render({{"depth_format", format},
-                                     {"fit", "none"},
-                                     {"pcf_kernel", int64_t{1}},
-                                     {"map_size", int64_t{4096}},
-                                     {"constant_bias", 1e-6},
-                                     {"slope_bias", 1.0}}));
-  };
-  EXPECT_LT(error("d32"), 0.5 * error("d16"));
-  EXPECT_LE(error("d24"), error("d16"));
-  EXPECT_LT(std::abs(error("d24") - error("d32")), 0.01);
-}
-
-TEST(ShadowMap, PoissonDiscApproachesTheGridOfItsSize) {
-  Stage stage(box_and_sphere(point_light({1, 5, 2})), width, height);
-  const Rendered grid = stage.render({{"pcf_kernel", int64_t{7}}, {"slope_bias", 7.0}});
-  const auto difference = [&](int64_t samples, bool rotate) {
-    return stage.error(stage
-                           .render({{"pcf_kernel", int64_t{7}},
-                                    {"slope_bias", 7.0},
-                                    {"pcf_pattern", "poisson"},
-                                    {"poisson_samples", samples},
-                                    {"poisson_rotation", rotate}})
-                           .visibility,
-                       grid.visibility);
-  };
-  EXPECT_LT(difference(64, false), 0.01);
-  EXPECT_LT(difference(64, true), 0.01);
-  EXPECT_LT(difference(64, false), difference(4, false));
-}
-
-TEST(ShadowMap, DiscPointsFillTheUnitDisc) {
-  const std::vector<Vec2f> points = shadow_map::disc_points(64);
-  double radius = 0, nearest = 9;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    radius = std::max(radius, std::hypot(double(points[i].x), double(points[i].y)));
-    for (std::size_t j = 0; j < i; ++j)
-      nearest =
-          std::min(nearest, std::hypot(double(points[i].x - points[j].x), double(points[i].y - points[j].y)));
-  }
-  EXPECT_LE(radius, 1);
-  EXPECT_GT(radius, 0.95);
-  EXPECT_GT(nearest, 0.12);  // 64 random points come as close as 0.02
-}
-
 // The fit covers the view samples alone; what casts from outside is kept by depth clamp.
 TEST(ShadowMap, CastersOutsideTheViewAreKept) {
   Frame f;
@@ -361,7 +207,7 @@ TEST(ShadowMap, CastersOutsideTheViewAreKept) {
   double umbra = 0;
   for (float v : stage.reference().visibility) umbra += v == 0;
   EXPECT_GT(umbra, 500);
-  EXPECT_LT(stage.error(stage.render(plain())), 0.01);
+  EXPECT_LT(stage.error(stage.render(unfiltered())), 0.01);
 }
 
 TEST(ShadowMap, SpotLightIsDarkOutsideItsCone) {
@@ -369,7 +215,7 @@ TEST(ShadowMap, SpotLightIsDarkOutsideItsCone) {
   double lit = 0, dark = 0;
   for (float v : stage.reference().visibility) (v > 0 ? lit : dark) += 1;
   EXPECT_GT(dark, lit);
-  EXPECT_LT(stage.error(stage.render(plain({{"map_size", int64_t{1024}}}))), 0.004);
+  EXPECT_LT(stage.error(stage.render(unfiltered({{"map_size", int64_t{1024}}}))), 0.004);
 }
 
 TEST(ShadowMap, SecondFrameAllocatesNothingAndIsTheSame) {
@@ -405,7 +251,7 @@ TEST(ShadowMap, TexelToPixelRatioIsTheGeometricOne) {
   f.camera.eye = {0, 10, 0}, f.camera.target = {0, 0, 0}, f.camera.up = {0, 0, -1};
   f.camera.vertical_fov_degrees = 10;
   Stage stage(std::move(f), 65, 65);
-  const Rendered r = stage.render(plain({{"fit", "none"}, {"map_size", int64_t{256}}}));
+  const Rendered r = stage.render(unfiltered({{"fit", "none"}, {"map_size", int64_t{256}}}));
   const double pixel = 2 * 10 * std::tan(5 * std::numbers::pi / 180) / 65, texel = 4.0 / (256 - 3);
   EXPECT_NEAR(number(r.counters, "texel_to_pixel_median"), texel / pixel, 1e-3);
   EXPECT_NEAR(number(r.counters, "texel_to_pixel_p95"), texel / pixel, 1e-3);

@@ -146,8 +146,11 @@ TEST(Warps, FallBackWhereViewAndLightAlign) {
   EXPECT_EQ(number(aligned.render(plain({{"warp", "lispsm"}})).counters, "warped_layers"), 0);
 }
 
+// Above the road, near enough to see its ends far apart.
+const Light overhead = point_light({0.3f, 30, -30});
+
 TEST_P(EachWarp, BeatsNoneOnALongView) {
-  for (const Light& light : {side, point_light({-80, 100, -50})}) {
+  for (const Light& light : {side, point_light({-80, 100, -50}), overhead}) {
     Stage stage(long_view(light), width, height);
     const Rendered warped = stage.render(plain({{"warp", GetParam().first}})), none = stage.render(plain());
     EXPECT_EQ(number(warped.counters, "warped_layers"), 1);
@@ -155,10 +158,10 @@ TEST_P(EachWarp, BeatsNoneOnALongView) {
   }
 }
 
-TEST_P(EachWarp, DiffersOnlyWithinTexelAndBiasOfAnEdge) {
-  Stage stage(long_view(side), width, height);
+void differs_only_near_edges(const Light& light, const char* kind) {
+  Stage stage(long_view(light), width, height);
   const double constant = 2e-6 * double(stage.frame.geometry.bounds.diagonal());
-  const ParamValues given = plain({{"map_size", int64_t{128}}, {"warp", GetParam().first}});
+  const ParamValues given = plain({{"map_size", int64_t{128}}, {"warp", kind}});
   const Rendered r = stage.render(given);
   const FittedLayer layer = stage.fit(given).layers[0];
   const testing::BruteForce truth(stage.frame.geometry);
@@ -175,9 +178,13 @@ TEST_P(EachWarp, DiffersOnlyWithinTexelAndBiasOfAnEdge) {
     const double texel = 2.0 / 128 * norm / std::abs(det);  // not below the longest side
     const double reach =
         1.2 * (std::numbers::sqrt2 / 2 + 1.5) * texel + constant;  // texels vary within a few
-    EXPECT_LE(truth.explain(p, light_point(side).towards, no_triangle, reach).distance, reach) << i;
+    EXPECT_LE(truth.explain(p, light_point(light).towards, no_triangle, reach).distance, reach) << kind << i;
   }
   EXPECT_GT(differing, 3);
+}
+
+TEST_P(EachWarp, DiffersOnlyWithinTexelAndBiasOfAnEdge) {
+  for (const Light& light : {side, overhead}) differs_only_near_edges(light, GetParam().first);
 }
 
 TEST(ShadowMap, LogarithmicMapsKnowTheSidesOfCasters) {
