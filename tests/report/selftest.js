@@ -205,6 +205,32 @@
     choose("Side by side");
   };
 
+  const gallery = async () => {
+    const named = data.points.filter((p) => p.title && p.status === "ok");
+    const section = one("#gallery");
+    check("the gallery is there when exhibits are", section.hidden === !named.length);
+    check("and so is its link", one("#gallery-link").hidden === !named.length);
+    if (!named.length) return;
+    const titles = new Set(named.map((p) => p.title));
+    check("one card for each title", all(".exhibit").length === titles.size, all(".exhibit").length);
+    check("which it names", one(".exhibit h3").textContent.includes(named[0].title), one(".exhibit h3").textContent);
+    check("and explains", one(".exhibit").textContent.includes(named[0].caption));
+    const pictures = all(".exhibit img");
+    check("every variant and the truth are shown", pictures.length > named.length, pictures.length);
+    for (const img of pictures) check(`exhibit ${img.getAttribute("src")}`, await loaded(img));
+    const img = one(".exhibit .view[title] img"),
+      own = img.src;
+    img.parentElement.dispatchEvent(new PointerEvent("pointerdown"));
+    check("held, a picture shows the truth", img.src !== own);
+    img.parentElement.dispatchEvent(new PointerEvent("pointerup"));
+    check("let go, itself", img.src === own);
+  };
+
+  const fits_the_window = () => {
+    const page = document.documentElement;
+    check("nothing is wider than the window", page.scrollWidth <= page.clientWidth, `${page.scrollWidth} ${page.clientWidth}`);
+  };
+
   try {
     const hostile = data.points.some((p) => p.scene.includes("<"));
     if (total > 0) {
@@ -214,6 +240,8 @@
     } else {
       check("an empty run says so", one("#viewer .empty") !== null && one("#plots .empty") !== null);
     }
+    fits_the_window();
+    await gallery();
     if (data.pictures.some((p) => p.visibility)) await viewer();
     if (hostile) {
       check(

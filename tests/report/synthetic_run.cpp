@@ -215,6 +215,10 @@ json point_of(const Variant& variant, const std::string& scene, int index, const
                       {{"assign", stat(variant.ms * .2, random)},
                        {"mask", stat(variant.ms * .75, random)},
                        {"resolve", stat(variant.ms * .05, random)}}}};
+  if (params.value("map_size", 0) == 256) {
+    point["title"] = "Blocky <edges>";
+    point["caption"] = "Texels are larger than pixels.";
+  }
   point["memory"] = {
       {"device_bytes", 48 << 20}, {"host_peak_bytes", 190 << 20}, {"structure_bytes", 7340032}};
   point["counters"] = {{"triangles_per_cell_average", 41.5}, {"cells", {1, 4, 9, 16, 12, 5, 2, 0, 1}}};

@@ -84,6 +84,7 @@
   });
 
   P.build_glance(at("glance-table"));
+  P.build_gallery(at("gallery"), at("gallery-link"));
   P.build_viewer(at("viewer"));
   P.build_plots(at("plot-cards"));
   P.build_table(at("table"));
