@@ -6,6 +6,7 @@
 #include "techniques/planar_shadow/planar_shadow.h"
 #include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/shadow_map/shadow_map.h"
+#include "techniques/shadow_map_per_sample/shadow_map_per_sample.h"
 #include "techniques/stencil_shadow_volume/stencil_shadow_volume.h"
 
 namespace penumbra {
@@ -15,6 +16,7 @@ Registry all_techniques() {
   return {
       ray_tracing_technique(),
       shadow_map_technique(),
+      shadow_map_per_sample_technique(),
       planar_shadow_technique(),
       stencil_shadow_volume_technique(),
       alias_free_shadow_map_technique(),

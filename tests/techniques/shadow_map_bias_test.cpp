@@ -1,6 +1,6 @@
 // Bias, faces, depth formats and percentage-closer filtering against closed forms.
 #include "shadow_map_scenes.h"
-#include "techniques/shadow_map/lookup.h"
+#include "techniques/common/shadow_maps/lookup.h"
 
 namespace penumbra::test {
 namespace {

@@ -2,7 +2,7 @@
 #include <random>
 
 #include "shadow_map_scenes.h"
-#include "techniques/shadow_map/shaders/moment_filters.h"
+#include "techniques/common/shadow_maps/shaders/moment_filters.h"
 
 namespace penumbra::test {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/light.h"
-#include "techniques/shadow_map/light_space.h"
+#include "techniques/common/shadow_maps/light_space.h"
 
 namespace penumbra::shadow_map {
 namespace {

@@ -1,6 +1,6 @@
 // Mip chains and anisotropic filtering of filterable maps.
 #include "shadow_map_scenes.h"
-#include "techniques/shadow_map/moment_maps.h"
+#include "techniques/common/shadow_maps/moment_maps.h"
 
 namespace penumbra::test {
 namespace {
@@ -39,7 +39,8 @@ Chain chain_of(Stage& stage, const ParamValues& given) {
   shadow_map::DepthMaps maps(params);
   shadow_map::MomentMaps moments(params);
   fitter.setup(device()), maps.setup(device()), moments.setup(device());
-  const shadow_map::Fitted& fitted = fitter.run(stage.the_case, stage.view, stage.passes);
+  const shadow_map::Fitted& fitted =
+      fitter.run(stage.the_case, light_point(stage.frame.light), stage.view, stage.passes);
   maps.draw(stage.the_case, fitted, stage.passes);
   moments.run(fitted, maps, stage.passes);
   std::vector<float> all(moments.moments().bytes() / sizeof(float));

@@ -10,7 +10,7 @@
 #include "gpu/device.h"
 #include "gpu/pass_recorder.h"
 #include "reference/reference.h"
-#include "techniques/shadow_map/fitter.h"
+#include "techniques/common/shadow_maps/fitter.h"
 #include "techniques/shadow_map/shadow_map.h"
 
 namespace penumbra::test {
@@ -141,7 +141,7 @@ class Stage {
   shadow_map::Fitted fit(const ParamValues& given) {
     shadow_map::Fitter fitter(params(given));
     fitter.setup(device());
-    return fitter.run(the_case, view, passes);
+    return fitter.run(the_case, light_point(frame.light), view, passes);
   }
   std::optional<std::string> supports(const ParamValues& given) { return make(given)->supports(the_case); }
 

@@ -2,7 +2,8 @@
 #include <cstring>
 
 #include "shadow_map_scenes.h"
-#include "techniques/shadow_map/counters.h"
+#include "techniques/common/shadow_maps/counters.h"
+#include "techniques/common/shadow_maps/depth_maps.h"
 #include "tests/support/brute_force.h"
 
 namespace penumbra::test {
@@ -81,7 +82,7 @@ TEST_P(EachLight, DiffersOnlyWithinTexelAndBiasOfAnEdge) {
           texel, w * std::max(l.extent.hi.x - l.extent.lo.x, l.extent.hi.y - l.extent.lo.y) / (256 - 3));
     }
     const double reach = (std::numbers::sqrt2 / 2 + slope_bias) * texel + constant_bias;
-    const testing::Tie tie = truth.exunfiltered(p, fitted.light.towards, no_triangle, reach);
+    const testing::Tie tie = truth.explain(p, fitted.light.towards, no_triangle, reach);
     EXPECT_LE(tie.distance, reach) << i << (tie.blocked ? " blocked" : " lit");
   }
   EXPECT_GT(differing, 3);
@@ -137,7 +138,8 @@ TEST(ShadowMap, UnfilteredLookupIsTheComparisonWithTheNearestTexel) {
   shadow_map::Fitter fitter(params);
   shadow_map::DepthMaps maps(params);
   fitter.setup(device()), maps.setup(device());
-  const shadow_map::Fitted& fitted = fitter.run(stage.the_case, stage.view, stage.passes);
+  const shadow_map::Fitted& fitted =
+      fitter.run(stage.the_case, light_point(stage.frame.light), stage.view, stage.passes);
   maps.draw(stage.the_case, fitted, stage.passes);
   gpu::Buffer texels(device(), 333 * 333 * sizeof(float), gpu::Memory::read_back, "texels");
   stage.passes.device_pass("copy", [&](gpu::Commands& c) {

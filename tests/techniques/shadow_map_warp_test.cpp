@@ -1,6 +1,6 @@
 // Warps and cascades: their formulas, and that they do what they are for.
 #include "shadow_map_scenes.h"
-#include "techniques/shadow_map/warp.h"
+#include "techniques/common/shadow_maps/warp.h"
 #include "tests/support/brute_force.h"
 
 namespace penumbra::test {
@@ -146,8 +146,9 @@ TEST(Warps, FallBackWhereViewAndLightAlign) {
   EXPECT_EQ(number(aligned.render(plain({{"warp", "lispsm"}})).counters, "warped_layers"), 0);
 }
 
-// Above the road, near enough to see its ends far apart.
-const Light overhead = point_light({0.3f, 30, -30});
+// Above the road, near enough to see its ends far apart. Not over its middle: from there the posts' sides are slivers
+// narrower than any texel, whose acne is all there is to see.
+const Light overhead = point_light({9, 30, -30});
 
 TEST_P(EachWarp, BeatsNoneOnALongView) {
   for (const Light& light : {side, point_light({-80, 100, -50}), overhead}) {

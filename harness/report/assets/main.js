@@ -81,10 +81,12 @@
   P.on_scheme_change(() => {
     draw_legend();
     P.build_glance(at("glance-table"));
+    P.build_flicker(at("flicker"));
   });
 
   P.build_glance(at("glance-table"));
   P.build_gallery(at("gallery"), at("gallery-link"));
+  P.build_flicker(at("flicker"));
   P.build_viewer(at("viewer"));
   P.build_plots(at("plot-cards"));
   P.build_table(at("table"));
