@@ -4,11 +4,24 @@
   const flicker_of = (p) => p.metrics?.flicker;
   const is_summary = (p) => p.frame === null && p.status === "ok" && typeof flicker_of(p) === "number";
 
-  const bar = (p, keys, most) =>
+  // Of many parameters those that are not as usual; all of them for the point that is as usual in each.
+  const short_text = (p, own) => {
+    const keys = P.variant_keys(own);
+    const as_text = (q, key) => JSON.stringify(P.param(q, key));
+    const usual = (key) => {
+      const counts = new Map();
+      for (const q of own) counts.set(as_text(q, key), (counts.get(as_text(q, key)) ?? 0) + 1);
+      return [...counts].sort((a, b) => b[1] - a[1])[0][0];
+    };
+    const told = keys.length > 2 ? keys.filter((key) => as_text(p, key) !== usual(key)) : keys;
+    return P.variant_text(p, told.length ? told : keys);
+  };
+
+  const bar = (p, own, most) =>
     P.element(
       "tr",
       {},
-      P.element("th", { scope: "row" }, P.marker_icon(p.technique), P.variant_text(p, keys) || P.technique_label(p.technique)),
+      P.element("th", { scope: "row" }, P.marker_icon(p.technique), short_text(p, own) || P.technique_label(p.technique)),
       P.element(
         "td",
         { class: "bar" },
@@ -38,7 +51,7 @@
           P.element(
             "tbody",
             {},
-            ...own.map((p) => bar(p, P.variant_keys(own.filter((q) => q.technique === p.technique)), most)),
+            ...own.map((p) => bar(p, own.filter((q) => q.technique === p.technique), most)),
           ),
         );
       }),
