@@ -146,8 +146,8 @@ TEST(Warps, FallBackWhereViewAndLightAlign) {
   EXPECT_EQ(number(aligned.render(plain({{"warp", "lispsm"}})).counters, "warped_layers"), 0);
 }
 
-// Above the road, near enough to see its ends far apart. Not over its middle: from there the posts' sides are slivers
-// narrower than any texel, whose acne is all there is to see.
+// Above the road, near enough to see its ends far apart. Not over its middle: from there the posts' sides are
+// slivers narrower than any texel, whose acne is all there is to see.
 const Light overhead = point_light({9, 30, -30});
 
 TEST_P(EachWarp, BeatsNoneOnALongView) {
