@@ -54,12 +54,16 @@ const Fitted& Fitter::run(const Case& c, const LightPoint& light, const ViewSamp
   passes.host_pass("fit", [&] {
     const Extent e = needs_sample_box() ? decode(read_back_.view<SampleBounds>()[0]) : Extent{};
     if (!e.empty()) sample_box_ = {Vec3f(e.lo), Vec3f(e.hi)}, view_lo_ = e.view_lo, view_hi_ = e.view_hi;
-    aim(c), query_layers();
+    aim(c, Aim::center), query_layers();
   });
   const auto reduce_layers = [&] {
     reduce("fit_bounds", static_cast<int>(fitted_.layers.size()), view_samples, passes);
   };
   reduce_layers();
+  if (may_need_faces(fitted_.light) && outside()) {
+    passes.host_pass("fit", [&] { aim(c, Aim::middle), query_layers(); });
+    reduce_layers();
+  }
   if (may_need_faces(fitted_.light) && outside()) {
     if (params_.cascades > 1 || params_.warp != Warp::none)
       throw PointError(
@@ -98,13 +102,16 @@ void Fitter::add_layer(const LightFrame& frame) {
   fitted_.layers.push_back(layer);
 }
 
-void Fitter::aim(const Case& c) {
+void Fitter::aim(const Case& c, Aim at) {
+  fitted_.layers.clear();
   limit_ = may_need_faces(fitted_.light) ? widest_tangent : no_limit;
   // A stable fit must not turn with what the camera sees.
   const bool tight = params_.fit == Fit::tight;
   const Box& box = tight ? sample_box_ : c.frame->geometry.bounds;
-  const Vec3d forward =
-      may_need_faces(fitted_.light) ? middle_direction(fitted_.light.towards.xyz(), box) : fitted_.light.axis;
+  const Vec3d from = fitted_.light.towards.xyz();
+  const Vec3d forward = !may_need_faces(fitted_.light) ? fitted_.light.axis
+                        : at == Aim::center            ? Vec3d(box.center()) - from
+                                                       : middle_direction(from, box);
   // Nor may stable ranges follow every sample that comes nearer or goes farther.
   const double lo = tight ? view_lo_ : 1 / rounded_up(1 / view_lo_);
   const double hi = tight ? view_hi_ : rounded_up(view_hi_);
@@ -257,12 +264,16 @@ void Fitter::crop_layers(const Case& c) {
 
 // No fitting: the map covers the scene's bounds, or a spot's cone.
 void Fitter::fit_scene(const Case& c) {
-  aim(c);
+  aim(c, Aim::center);
   const Box& box = c.frame->geometry.bounds;
   double farthest = 0;
   for_each_corner(box,
                   [&](Vec3d p) { farthest = std::max(farthest, length(p - fitted_.light.towards.xyz())); });
-  const std::optional<Extent> whole = extent_of(box, fitted_.layers[0].space_from_world, limit_);
+  std::optional<Extent> whole = extent_of(box, fitted_.layers[0].space_from_world, limit_);
+  if (!whole && may_need_faces(fitted_.light)) {
+    aim(c, Aim::middle);
+    whole = extent_of(box, fitted_.layers[0].space_from_world, limit_);
+  }
   if (whole && !fitted_.light.spot) {
     fitted_.layers[0].extent = *whole;
   } else {

@@ -36,8 +36,11 @@ class Fitter {
  private:
   void reset(const Case& c, const LightPoint& light);
   void fit_scene(const Case& c);
-  void aim(const Case& c);  // frames and spaces of one map, or of cascades
-  void aim_faces();         // of six faces
+  // Frames and spaces of one map, or of cascades. A light that shines to all sides looks at the centre of
+  // what is to be covered; where that leaves some of it too far aside, at the middle of the directions to it.
+  enum class Aim { center, middle };
+  void aim(const Case& c, Aim at);
+  void aim_faces();  // of six faces
   void add_layer(const LightFrame& frame);
   bool needs_sample_box() const;
   void query(int slot, const Mat4d& space, double view_lo, double view_hi, double limit);
