@@ -25,9 +25,9 @@ class AliasFreeShadowMap final : public Technique {
   }
 
   void setup(const Case& c, gpu::PassRecorder&) override {
-    fitter_.setup(*c.device);
-    lists_.setup(*c.device);
-    casters_.setup(*c.device);
+    fitter_.setup(c);
+    lists_.setup(c);
+    casters_.setup(c);
     resolve_ = gpu::ComputePipeline(*c.device, alias_free_resolve_spv, sizeof(ResolvePush));
   }
 
@@ -101,7 +101,7 @@ TechniqueInfo alias_free_shadow_map_technique() {
   info.title = "Alias-free shadow maps";
   info.sources = {"Sintorn2008, sec. 3", "Aila2004", "Johnson2005"};
   info.params = param_table().infos();
-  info.lights = {LightKind::point,  LightKind::spot,               LightKind::rectangle,
+  info.lights = {LightKind::point, LightKind::directional, LightKind::spot, LightKind::rectangle,
                  LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
   info.sampled = false;
   info.residence = Residence::device;

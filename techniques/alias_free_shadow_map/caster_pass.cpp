@@ -20,10 +20,12 @@ uint32_t CasterPass::items_per_triangle() const {
   return std::max(small_rows, (static_cast<uint32_t>(params_.grid_size) + item_rows - 1) / item_rows);
 }
 
-void CasterPass::setup(gpu::Device& device) {
+void CasterPass::setup(const Case& c) {
+  gpu::Device& device = *c.device;
+  const bool parallel = at_infinity(c.frame->light);
   for (uint32_t counting = 0; counting < 2; ++counting)
     for (uint32_t inner = 0; inner < 2; ++inner) {
-      const gpu::Specialization constants[] = {{0, counting}, {1, item_turns}, {2, inner}};
+      const gpu::Specialization constants[] = {{0, counting}, {1, item_turns}, {2, inner}, {3, parallel}};
       Kernels& k = kernels_[inner][counting];
       k.triangles = gpu::ComputePipeline(device, alias_free_cast_triangles_spv, sizeof(CastPush), constants);
       k.items = gpu::ComputePipeline(device, alias_free_cast_items_spv, sizeof(CastPush), constants);

@@ -10,7 +10,7 @@ namespace penumbra::alias_free {
 class CasterPass {
  public:
   explicit CasterPass(const Params& params) : params_(params) {}
-  void setup(gpu::Device& device);
+  void setup(const Case& c);
   // Which triangles belong to closed meshes.
   void build(const Case& c, gpu::PassRecorder& passes);
   // Passes "cast_triangles", "cast_items" and, where a closed mesh is seen from the inside, "cast_inner".

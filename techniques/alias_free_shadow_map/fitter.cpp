@@ -12,8 +12,10 @@ const gpu::Buffer& segment_origins(const Params& params, const ViewSamples& view
   return params.origin == SegmentOrigin::exact ? view.position() : view.origin();
 }
 
-void Fitter::setup(gpu::Device& device) {
-  reduce_ = gpu::ComputePipeline(device, alias_free_bounds_spv, sizeof(BoundsPush));
+void Fitter::setup(const Case& c) {
+  gpu::Device& device = *c.device;
+  const gpu::Specialization constants[] = {{3, at_infinity(c.frame->light)}};
+  reduce_ = gpu::ComputePipeline(device, alias_free_bounds_spv, sizeof(BoundsPush), constants);
   view_buffer_ = gpu::Buffer(device, sizeof(LightView), gpu::Memory::device, "the light's view");
   bounds_ = gpu::Buffer(device, most_faces * sizeof(SampleBounds), gpu::Memory::device, "view samples' bounds");
   read_back_ = gpu::Buffer(device, most_faces * sizeof(SampleBounds), gpu::Memory::read_back, "view samples' bounds");

@@ -11,7 +11,7 @@ namespace penumbra::alias_free {
 class Fitter {
  public:
   explicit Fitter(const Params& params) : params_(params) {}
-  void setup(gpu::Device& device);
+  void setup(const Case& c);
   // Passes "fit_box" and "fit_window" (device), "fit" (host).
   const LightView& run(const RenderInput& in, gpu::PassRecorder& passes);
   // Faces that some view sample is seen through.

@@ -8,6 +8,9 @@
 
 namespace penumbra::alias_free {
 
+// A constant of the pipelines: a case keeps its kind of light.
+inline bool at_infinity(const Light& light) { return light.kind == LightKind::directional; }
+
 // Box of q, or bounds (u, v, depth) in a face.
 struct Extent {
   Vec3d lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};

@@ -7,9 +7,10 @@
 
 namespace penumbra::alias_free {
 
-void SampleLists::setup(gpu::Device& device) {
+void SampleLists::setup(const Case& c) {
+  gpu::Device& device = *c.device;
   for (uint32_t stage = 0; stage < 2; ++stage) {
-    const gpu::Specialization constants[] = {{0, stage}};
+    const gpu::Specialization constants[] = {{0, stage}, {3, at_infinity(c.frame->light)}};
     bin_[stage] = gpu::ComputePipeline(device, alias_free_bin_samples_spv, sizeof(BinPush), constants);
   }
   scan_.setup(device, std::min(device.caps().subgroup_size, 32U));

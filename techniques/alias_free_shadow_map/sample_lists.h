@@ -12,7 +12,7 @@ namespace penumbra::alias_free {
 class SampleLists {
  public:
   explicit SampleLists(const Params& params) : params_(params) {}
-  void setup(gpu::Device& device);
+  void setup(const Case& c);
   // Passes "count", "scan", "fill". All bits of blocked() are 0 afterwards.
   void run(const RenderInput& in, const LightView& view, const gpu::Buffer& view_buffer, gpu::PassRecorder& passes);
 

@@ -67,7 +67,8 @@ inline LightFrame light_frame(Vec3d forward, Vec3d hint) {
   return {cross(down, forward), down, forward};
 }
 
-// Faces of a cube about the light, 2 axis + (negative side ? 1 : 0): its own axes, for only then do they meet.
+// Faces of a cube about the light, 2 axis + (negative side ? 1 : 0): its own axes, for only then do they
+// meet.
 inline LightFrame cube_frame(int face) {
   Vec3d forward, hint;
   forward[face / 2] = face % 2 ? -1 : 1, hint[(face / 2 + 1) % 3] = 1;

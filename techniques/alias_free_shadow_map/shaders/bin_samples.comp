@@ -11,7 +11,7 @@ uint texel_of(vec3 q) {
   const uint n = push.frame.f.grid_size;
   const uint index = push.frame.f.face_count > 1u ? cube_face(q) : 0u;
   const Face face = push.frame.f.faces[index];
-  const vec2 at = (project(face, at_infinity(push.frame), q).xy - face.window.xy) * face.window.zw;
+  const vec2 at = (project(face, q).xy - face.window.xy) * face.window.zw;
   const uvec2 texel = uvec2(clamp(at, vec2(0.0), vec2(float(n - 1u))));
   return (index * n + texel.y) * n + texel.x;
 }

@@ -12,7 +12,7 @@ void main() {
   const uint slot = push.face == most_faces ? 0u : push.face;
   const float infinity = uintBitsToFloat(0x7f800000u);
   const uint lane = gl_LocalInvocationIndex;
-  const bool parallel = at_infinity(push.frame), cube = push.frame.f.face_count > 1u;
+  const bool cube = push.frame.f.face_count > 1u;
   const vec4 light = push.frame.f.light, emission = push.frame.f.emission;
   const vec3 center = push.frame.f.center.xyz;
   const Face face = push.frame.f.faces[slot];
@@ -27,9 +27,9 @@ void main() {
     bool counts = position.w > 0.0 && may_be_lit(position.xyz, push.normal.at[pixel].xyz, light, emission);
     vec3 p = q;
     if (push.face != most_faces) {
-      p = project(face, parallel, q);
+      p = project(face, q);
       counts = counts && (!cube || cube_face(q) == push.face);
-      const bool inside = (parallel || p.z > 0.0) && abs(p.x) <= push.limit && abs(p.y) <= push.limit;
+      const bool inside = (PARALLEL || p.z > 0.0) && abs(p.x) <= push.limit && abs(p.y) <= push.limit;
       outside = outside || (counts && !inside);
       counts = counts && inside;
     }

@@ -13,12 +13,14 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) buffer BoundsArray
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer ItemArray { uvec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ProgressRef { Progress p; };
 
-#define at_infinity(frame) ((frame).f.light.w == 0.0)
+// The light is at infinity. A constant of the pipeline and no question to the frame's buffer: lavapipe (Mesa 22.3.6)
+// answers `light.w == 0.0` wrongly in the kernels that test triangles.
+layout(constant_id = 3) const bool PARALLEL = false;
 
 // (u, v, depth) of q in a face.
-vec3 project(const Face face, bool parallel, vec3 q) {
+vec3 project(const Face face, vec3 q) {
   const float depth = dot(face.forward.xyz, q);
-  return vec3(vec2(dot(face.right.xyz, q), dot(face.down.xyz, q)) / (parallel ? 1.0 : depth), depth);
+  return vec3(vec2(dot(face.right.xyz, q), dot(face.down.xyz, q)) / (PARALLEL ? 1.0 : depth), depth);
 }
 
 // The face of a cube about the light that q is seen through: 2 axis + (negative side ? 1 : 0).

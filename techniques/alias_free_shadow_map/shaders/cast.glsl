@@ -15,40 +15,39 @@ struct Footprint {
   vec2 lo, hi;        // texels, continuous, not yet clamped to the face
 };
 
-Caster load_caster(uint t, FrameRef frame) {
-  const vec3 center = frame.f.center.xyz;
+Caster load_caster(uint t) {
+  const vec3 center = push.frame.f.center.xyz;
   const uint i = 3u * t;
   const vec3 a = push.positions.at[push.indices.at[i]] - center, b = push.positions.at[push.indices.at[i + 1u]] - center,
              c = push.positions.at[push.indices.at[i + 2u]] - center;
-  return make_caster(a, b, c, frame.f.light);
+  return make_caster(a, b, c, push.frame.f.light);
 }
 
-bool casts(uint t, const Caster caster, FrameRef frame) {
+bool casts(uint t, const Caster caster) {
   const bool closed = (push.closed.at[t >> 5u] >> (t & 31u) & 1u) != 0u;
-  const bool front = caster.light_side > 0.0 && (INNER ? closed : !closed || frame.f.both_faces != 0u);
+  const bool front = caster.light_side > 0.0 && (INNER ? closed : !closed || push.frame.f.both_faces != 0u);
   // Closed meshes' triangles that turn away must meet their own view samples, see test().
   const bool meets_own = closed && !INNER;
   return (front || (!INNER && caster.light_side < 0.0)) &&
-         !hides_nothing(caster, frame.f.sample_lo.xyz, frame.f.sample_hi.xyz, meets_own);
+         !hides_nothing(caster, push.frame.f.sample_lo.xyz, push.frame.f.sample_hi.xyz, meets_own);
 }
 
 // Bounds in whole-face terms where a corner is not before the light: the edges alone then bound the rows' ranges.
-Footprint footprint(const Caster caster, const Face face, FrameRef frame) {
+Footprint footprint(const Caster caster, const Face face) {
   Footprint f;
-  const bool parallel = at_infinity(frame);
   const float inner = caster.light_side < 0.0 ? 1.0 : -1.0;
   for (int k = 0; k < 3; ++k) {
     const vec4 e = caster.edges[k] * inner;
     const float error = 2e-6 * ((abs(e.x) + abs(e.y) + abs(e.z)) * face.slack.z + abs(e.w));
     f.edges[k] = vec3(dot(e.xyz, face.right.xyz), dot(e.xyz, face.down.xyz),
-                      (parallel ? e.w : dot(e.xyz, face.forward.xyz)) + error);
+                      (PARALLEL ? e.w : dot(e.xyz, face.forward.xyz)) + error);
   }
   f.lo = vec2(3e38), f.hi = vec2(-3e38);
   bool behind = false;
   for (int k = 0; k < 3; ++k) {
     const vec3 q = k == 0 ? caster.a : k == 1 ? caster.b : caster.c;
-    const vec3 p = project(face, parallel, q);
-    behind = behind || (!parallel && !(p.z > 1e-6 * (abs(q.x) + abs(q.y) + abs(q.z))));
+    const vec3 p = project(face, q);
+    behind = behind || (!PARALLEL && !(p.z > 1e-6 * (abs(q.x) + abs(q.y) + abs(q.z))));
     const vec2 at = (p.xy - face.window.xy) * face.window.zw;
     const vec2 slack = face.slack.xy + 8e-6 * abs(p.xy) * face.window.zw;
     f.lo = min(f.lo, at - slack);

@@ -6,8 +6,8 @@
 void main() {
   const uint t = linear_group() * group_lanes + gl_LocalInvocationIndex;
   if (t >= push.count) return;
-  const Caster caster = load_caster(t, push.frame);
-  if (!casts(t, caster, push.frame)) return;
+  const Caster caster = load_caster(t);
+  if (!casts(t, caster)) return;
   const uint count = min(push.progress.p.inner_count, most_inner);
   for (uint i = 0u; i < count; ++i) test(t, caster, push.progress.p.inner[i]);
   count_pairs(count);

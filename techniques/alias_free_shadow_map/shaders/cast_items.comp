@@ -15,9 +15,9 @@ void main() {
   const uint rows = item.y & 255u;
   const bool single = rows == 1u;
   if (!single && lane >= rows) return;
-  const Caster caster = load_caster(item.x, push.frame);
+  const Caster caster = load_caster(item.x);
   const Face face = push.frame.f.faces[push.face];
-  const Footprint f = footprint(caster, face, push.frame);
+  const Footprint f = footprint(caster, face);
   const uvec2 range = row_range(f, face, int((item.y >> 8u) + (single ? 0u : lane)), push.frame.f.grid_size);
   const uint step = single ? item_rows : 1u;
   const uint length = (range.y - range.x + step - 1u) / step;

@@ -13,11 +13,11 @@ void main() {
   const uint part = (push.groups + strips - 1u) / strips;
   const uint t = push.first + (group % strips * part + group / strips) * group_lanes + gl_LocalInvocationIndex;
   if (group / strips >= part || t - push.first >= push.count) return;
-  const Caster caster = load_caster(t, push.frame);
-  if (!casts(t, caster, push.frame)) return;
+  const Caster caster = load_caster(t);
+  if (!casts(t, caster)) return;
   const Face face = push.frame.f.faces[push.face];
   const uint grid_size = push.frame.f.grid_size;
-  const Footprint f = footprint(caster, face, push.frame);
+  const Footprint f = footprint(caster, face);
   const ivec2 rows = rows_of(f, int(grid_size));
   uint pairs = 0u;
   if (rows.y - rows.x >= int(small_rows)) {

@@ -53,7 +53,7 @@ Caster make_caster(vec3 a, vec3 b, vec3 c, vec4 light) {
   precise vec3 n = vec3(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
   t.normal = n;
   t.a = a, t.b = b, t.c = c;
-  t.light_side = light.w != 0.0 ? plane_side(n, a, vec3(0.0)) : dot(n, light.xyz);
+  t.light_side = light.w > 0.5 ? plane_side(n, a, vec3(0.0)) : dot(n, light.xyz);
   return t;
 }
 
