@@ -20,7 +20,8 @@ class AliasFreeShadowMap final : public Technique {
   std::optional<std::string> supports(const Case& c) const override {
     const uint32_t lanes = c.device->caps().subgroup_size;
     if (lanes < 4 || !std::has_single_bit(lanes))
-      return fmt::format("The lists' prefix sums need subgroups of 4 lanes or more; this device has {}.", lanes);
+      return fmt::format("The lists' prefix sums need subgroups of 4 lanes or more; this device has {}.",
+                         lanes);
     return {};
   }
 
@@ -38,7 +39,8 @@ class AliasFreeShadowMap final : public Technique {
 
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {
     const LightView& view = fitter_.run(in, passes);
-    lists_.run(in, view, fitter_.view_buffer(), passes);
+    const auto pixels = static_cast<uint32_t>(in.view_samples->width() * in.view_samples->height());
+    lists_.run(pixels, view, fitter_, passes);
     casters_.run(*in.scene_case, fitter_, lists_, passes);
     resolve(in, passes);
     last_ = in;
@@ -76,7 +78,8 @@ Counters AliasFreeShadowMap::counters() {
   if (!last_.view_samples) return out;
   gpu::PassRecorder passes(*last_.scene_case->device);
   std::vector<uint32_t> lengths(lists_.texels());
-  if (!lengths.empty()) gpu::download(passes, "download", lists_.lengths(), lengths.data(), lengths.size() * 4);
+  if (!lengths.empty())
+    gpu::download(passes, "download", lists_.lengths(), lengths.data(), lengths.size() * 4);
   passes.finish();
   double total = 0, occupied = 0, longest = 0;
   for (const double n : lengths) total += n, occupied += n > 0, longest = std::max(longest, n);
@@ -101,12 +104,13 @@ TechniqueInfo alias_free_shadow_map_technique() {
   info.title = "Alias-free shadow maps";
   info.sources = {"Sintorn2008, sec. 3", "Aila2004", "Johnson2005"};
   info.params = param_table().infos();
-  info.lights = {LightKind::point, LightKind::directional, LightKind::spot, LightKind::rectangle,
+  info.lights = {LightKind::point,  LightKind::directional,        LightKind::spot,  LightKind::rectangle,
                  LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
   info.sampled = false;
   info.residence = Residence::device;
   info.origin = [](const ParamValues& values) {
-    return param_table().read(values).origin == alias_free::SegmentOrigin::exact ? Origin::exact : Origin::offset;
+    return param_table().read(values).origin == alias_free::SegmentOrigin::exact ? Origin::exact
+                                                                                 : Origin::offset;
   };
   info.make = [](const ParamValues& values) {
     return std::make_unique<alias_free::AliasFreeShadowMap>(param_table().read(values));

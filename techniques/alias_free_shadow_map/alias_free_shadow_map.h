@@ -1,5 +1,5 @@
-// Alias-free shadow maps [Sintorn2008, sec. 3]: lists of view samples in the light's view, tested exactly against every
-// shadow-casting triangle. README.md says what is built.
+// Alias-free shadow maps [Sintorn2008, sec. 3]: lists of view samples in the light's view, tested exactly
+// against every shadow-casting triangle. README.md says what is built.
 #pragma once
 #include "technique/technique.h"
 

@@ -5,14 +5,22 @@
 #include "shaders/alias_free_cast_inner.h"
 #include "shaders/alias_free_cast_items.h"
 #include "shaders/alias_free_cast_triangles.h"
+#include "shaders/alias_free_cull_triangles.h"
 
 namespace penumbra::alias_free {
 namespace {
 
 // Triangles of one dispatch are so many that their items cannot exceed this, whatever they cover.
 constexpr uint32_t item_capacity = 1 << 21;
-constexpr uint32_t item_turns = 32768;   // view samples of a row in one dispatch; see cast_items.comp
-constexpr uint32_t strips = 64;          // as cast_triangles.comp
+// View samples of a row in one dispatch: loops take at most 2 turns for each and 2 for each 32; see
+// cast_items.comp.
+constexpr uint32_t item_turns = 16384;
+constexpr uint32_t strips = 64;  // as cast_triangles.comp
+
+uint64_t culling_groups(uint32_t triangles) {
+  constexpr uint32_t per_group = group_lanes * triangles_per_lane;
+  return (uint64_t{triangles} + per_group - 1) / per_group;
+}
 
 }  // namespace
 
@@ -27,9 +35,12 @@ void CasterPass::setup(const Case& c) {
     for (uint32_t inner = 0; inner < 2; ++inner) {
       const gpu::Specialization constants[] = {{0, counting}, {1, item_turns}, {2, inner}, {3, parallel}};
       Kernels& k = kernels_[inner][counting];
+      k.cull = gpu::ComputePipeline(device, alias_free_cull_triangles_spv, sizeof(CastPush), constants);
       k.triangles = gpu::ComputePipeline(device, alias_free_cast_triangles_spv, sizeof(CastPush), constants);
       k.items = gpu::ComputePipeline(device, alias_free_cast_items_spv, sizeof(CastPush), constants);
-      if (inner) inner_[counting] = gpu::ComputePipeline(device, alias_free_cast_inner_spv, sizeof(CastPush), constants);
+      if (inner)
+        inner_[counting] =
+            gpu::ComputePipeline(device, alias_free_cast_inner_spv, sizeof(CastPush), constants);
     }
   progress_ = gpu::Buffer(device, sizeof(Progress), gpu::Memory::device, "counts");
   progress_host_ = gpu::Buffer(device, sizeof(Progress), gpu::Memory::read_back, "counts");
@@ -46,8 +57,11 @@ void CasterPass::build(const Case& c, gpu::PassRecorder& passes) {
   }
   gpu::ensure(closed_, *c.device, bits.size() * 4, gpu::Memory::device, "closed meshes' triangles");
   gpu::upload(passes, "upload_closed", closed_, bits.data(), bits.size() * 4);
+  gpu::ensure(casters_, *c.device, std::max<uint64_t>(triangle_count_, 1) * 4, gpu::Memory::device,
+              "triangles that cast");
   const uint64_t items = std::min<uint64_t>(item_capacity, uint64_t{triangle_count_} * items_per_triangle());
-  gpu::ensure(items_, *c.device, std::max<uint64_t>(items, 1) * 8, gpu::Memory::device, "items of large triangles");
+  gpu::ensure(items_, *c.device, std::max<uint64_t>(items, 1) * 8, gpu::Memory::device,
+              "items of large triangles");
 }
 
 CastPush CasterPass::push(const Case& c, const Fitter& fitter, const SampleLists& lists) const {
@@ -59,12 +73,14 @@ CastPush CasterPass::push(const Case& c, const Fitter& fitter, const SampleLists
   pc.offsets = lists.offsets().address();
   pc.lists = lists.lists().address();
   pc.blocked = lists.blocked().address();
+  pc.casters = casters_.address();
   pc.items = items_.address();
   pc.progress = progress_.address();
   return pc;
 }
 
-void CasterPass::run(const Case& c, const Fitter& fitter, const SampleLists& lists, gpu::PassRecorder& passes) {
+void CasterPass::run(const Case& c, const Fitter& fitter, const SampleLists& lists,
+                     gpu::PassRecorder& passes) {
   cast(c, fitter, lists, false, passes);
 }
 
@@ -81,15 +97,26 @@ void CasterPass::cast(const Case& c, const Fitter& fitter, const SampleLists& li
   if (inner > most_inner) return cast_all(pc, fitter, true, counting, passes);
   pc.count = triangle_count_;
   passes.device_pass("cast_inner", [&](gpu::Commands& commands) {
-    commands.dispatch(inner_[counting], pc, (uint64_t{pc.count} + group_lanes - 1) / group_lanes);
+    commands.dispatch(inner_[counting], pc, culling_groups(pc.count));
   });
 }
 
-void CasterPass::cast_all(CastPush pc, const Fitter& fitter, bool inner, bool counting, gpu::PassRecorder& passes) {
+void CasterPass::cast_all(CastPush pc, const Fitter& fitter, bool inner, bool counting,
+                          gpu::PassRecorder& passes) {
+  pc.count = triangle_count_;
+  passes.device_pass("cull_triangles", [&](gpu::Commands& commands) {
+    commands.fill(progress_, 0, offsetof(Progress, caster_count), 4);
+    commands.barrier();
+    commands.dispatch(kernels_[inner][counting].cull, pc, culling_groups(pc.count));
+    commands.barrier();
+    commands.copy(progress_, progress_host_, sizeof(Progress));
+  });
+  passes.finish();
+  const uint32_t casters = read_progress().caster_count;
   const uint32_t chunk = std::max(item_capacity / items_per_triangle(), 1U);
   for (pc.face = 0; pc.face < most_faces; ++pc.face)
-    for (pc.first = 0; fitter.used(pc.face) && pc.first < triangle_count_; pc.first += chunk) {
-      pc.count = std::min(chunk, triangle_count_ - pc.first);
+    for (pc.first = 0; fitter.used(pc.face) && pc.first < casters; pc.first += chunk) {
+      pc.count = std::min(chunk, casters - pc.first);
       cast_chunk(pc, inner, counting, passes);
     }
 }
@@ -123,14 +150,15 @@ void CasterPass::cast_chunk(CastPush pc, bool inner, bool counting, gpu::PassRec
 double CasterPass::count_pairs(const Case& c, const Fitter& fitter, const SampleLists& lists,
                                gpu::PassRecorder& passes) {
   cast(c, fitter, lists, true, passes);
-  passes.device_pass("read", [&](gpu::Commands& commands) { commands.copy(progress_, progress_host_, sizeof(Progress)); });
+  passes.device_pass(
+      "read", [&](gpu::Commands& commands) { commands.copy(progress_, progress_host_, sizeof(Progress)); });
   passes.finish();
   const Progress p = read_progress();
   return p.pairs[0] + 4294967296.0 * p.pairs[1];
 }
 
 uint64_t CasterPass::bytes() const {
-  return closed_.bytes() + items_.bytes() + progress_.bytes() + progress_host_.bytes();
+  return closed_.bytes() + casters_.bytes() + items_.bytes() + progress_.bytes() + progress_host_.bytes();
 }
 
 }  // namespace penumbra::alias_free

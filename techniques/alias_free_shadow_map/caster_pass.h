@@ -13,15 +13,18 @@ class CasterPass {
   void setup(const Case& c);
   // Which triangles belong to closed meshes.
   void build(const Case& c, gpu::PassRecorder& passes);
-  // Passes "cast_triangles", "cast_items" and, where a closed mesh is seen from the inside, "cast_inner".
+  // Passes "cull_triangles", "cast_triangles", "cast_items" and, where a closed mesh is seen from the inside,
+  // "cast_inner".
   void run(const Case& c, const Fitter& fitter, const SampleLists& lists, gpu::PassRecorder& passes);
   // The same again, counting the tests of a triangle against a view sample.
-  double count_pairs(const Case& c, const Fitter& fitter, const SampleLists& lists, gpu::PassRecorder& passes);
+  double count_pairs(const Case& c, const Fitter& fitter, const SampleLists& lists,
+                     gpu::PassRecorder& passes);
   uint64_t bytes() const;
 
  private:
   CastPush push(const Case& c, const Fitter& fitter, const SampleLists& lists) const;
-  void cast(const Case& c, const Fitter& fitter, const SampleLists& lists, bool counting, gpu::PassRecorder& passes);
+  void cast(const Case& c, const Fitter& fitter, const SampleLists& lists, bool counting,
+            gpu::PassRecorder& passes);
   void cast_all(CastPush pc, const Fitter& fitter, bool inner, bool counting, gpu::PassRecorder& passes);
   void cast_chunk(CastPush pc, bool inner, bool counting, gpu::PassRecorder& passes);
   Progress read_progress() const { return progress_host_.view<Progress>()[0]; }
@@ -29,10 +32,10 @@ class CasterPass {
 
   Params params_;
   struct Kernels {
-    gpu::ComputePipeline triangles, items;
-  } kernels_[2][2];   // [inner][counting]
+    gpu::ComputePipeline cull, triangles, items;
+  } kernels_[2][2];  // [inner][counting]
   gpu::ComputePipeline inner_[2];
-  gpu::Buffer closed_, items_, progress_, progress_host_;
+  gpu::Buffer closed_, casters_, items_, progress_, progress_host_;
   uint32_t triangle_count_ = 0;
 };
 

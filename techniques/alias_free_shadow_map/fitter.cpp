@@ -8,17 +8,18 @@ namespace {
 constexpr float no_limit = 3e38F;
 }  // namespace
 
-const gpu::Buffer& segment_origins(const Params& params, const ViewSamples& view) {
-  return params.origin == SegmentOrigin::exact ? view.position() : view.origin();
-}
-
 void Fitter::setup(const Case& c) {
   gpu::Device& device = *c.device;
-  const gpu::Specialization constants[] = {{3, at_infinity(c.frame->light)}};
-  reduce_ = gpu::ComputePipeline(device, alias_free_bounds_spv, sizeof(BoundsPush), constants);
+  const uint32_t parallel = at_infinity(c.frame->light), offset = params_.origin == SegmentOrigin::offset;
+  const gpu::Specialization gather[] = {{0, 1}, {3, parallel}, {4, offset}},
+                            bound[] = {{0, 0}, {3, parallel}};
+  gather_ = gpu::ComputePipeline(device, alias_free_bounds_spv, sizeof(BoundsPush), gather);
+  bound_ = gpu::ComputePipeline(device, alias_free_bounds_spv, sizeof(BoundsPush), bound);
   view_buffer_ = gpu::Buffer(device, sizeof(LightView), gpu::Memory::device, "the light's view");
-  bounds_ = gpu::Buffer(device, most_faces * sizeof(SampleBounds), gpu::Memory::device, "view samples' bounds");
-  read_back_ = gpu::Buffer(device, most_faces * sizeof(SampleBounds), gpu::Memory::read_back, "view samples' bounds");
+  bounds_ =
+      gpu::Buffer(device, most_faces * sizeof(SampleBounds), gpu::Memory::device, "view samples' bounds");
+  read_back_ =
+      gpu::Buffer(device, most_faces * sizeof(SampleBounds), gpu::Memory::read_back, "view samples' bounds");
 }
 
 const LightView& Fitter::run(const RenderInput& in, gpu::PassRecorder& passes) {
@@ -29,20 +30,20 @@ const LightView& Fitter::run(const RenderInput& in, gpu::PassRecorder& passes) {
   view_ = begin_view(light_, scene);
   view_.grid_size = static_cast<uint32_t>(params_.grid_size);
   view_.both_faces = params_.casters == Casters::both;
-  view_.leave_out_own = params_.origin == SegmentOrigin::exact;
   std::fill(std::begin(used_), std::end(used_), false);
+  gather(in, passes);
   if (params_.fit)
     fit_samples(in, passes);
   else
     passes.host_pass("fit", [&] { fit_scene(c); });
-  passes.device_pass("fit_upload", [&](gpu::Commands& commands) { commands.update(view_buffer_, &view_, sizeof view_); });
+  passes.device_pass("fit_upload",
+                     [&](gpu::Commands& commands) { commands.update(view_buffer_, &view_, sizeof view_); });
   return view_;
 }
 
 void Fitter::fit_samples(const RenderInput& in, gpu::PassRecorder& passes) {
   const Frame& frame = *in.scene_case->frame;
   const auto extent = [&](uint32_t slot) { return decode(read_back_.view<SampleBounds>()[slot]); };
-  reduce("fit_box", most_faces, 1, no_limit, in, passes);
   bool none = false;
   passes.host_pass("fit", [&] {
     const Extent box = extent(0);
@@ -53,8 +54,7 @@ void Fitter::fit_samples(const RenderInput& in, gpu::PassRecorder& passes) {
     if (none) set_window(view_, 0, {{0, 0, 0}, {1, 1, 1}}, diagonal_);
   });
   if (none) return;
-  const bool parallel = view_.light.w == 0;
-  reduce("fit_window", 0, 1, parallel ? no_limit : static_cast<float>(widest_tangent), in, passes);
+  bound(1, light_.at_infinity() ? no_limit : static_cast<float>(widest_tangent), passes);
   bool whole = true;
   passes.host_pass("fit", [&] {
     whole = extent(0).whole;
@@ -64,7 +64,7 @@ void Fitter::fit_samples(const RenderInput& in, gpu::PassRecorder& passes) {
       aim_cube(view_);
   });
   if (whole) return;
-  reduce("fit_window", 0, most_faces, static_cast<float>(face_tangent), in, passes);
+  bound(most_faces, static_cast<float>(face_tangent), passes);
   passes.host_pass("fit", [&] {
     for (uint32_t f = 0; f < most_faces; ++f) cover(f, extent(f));
   });
@@ -100,26 +100,40 @@ void Fitter::fit_scene(const Case& c) {
   }
 }
 
-void Fitter::reduce(const char* pass, uint32_t first_face, uint32_t faces, float limit, const RenderInput& in,
-                    gpu::PassRecorder& passes) {
+// View samples relative to the light, packed, and the box of those that face it.
+void Fitter::gather(const RenderInput& in, gpu::PassRecorder& passes) {
   const ViewSamples& view = *in.view_samples;
+  pixels_ = static_cast<uint32_t>(view.width() * view.height());
+  gpu::ensure(samples_, passes.device(), std::size_t{pixels_} * sizeof(Vec4f), gpu::Memory::device,
+              "view samples relative to the light");
   BoundsPush push{};
-  push.frame = view_buffer_.address();
   push.position = view.position().address();
-  push.origin = segment_origins(params_, view).address();
+  push.origin = view.origin().address();
   push.normal = view.geometric_normal().address();
-  push.bounds = bounds_.address();
-  push.count = static_cast<uint32_t>(view.width() * view.height());
+  push.triangle = view.triangle().address();
+  reduce("gather", gather_, push, 1, passes);
+}
+
+// What the view samples cover of each of the first faces.
+void Fitter::bound(uint32_t faces, float limit, gpu::PassRecorder& passes) {
+  BoundsPush push{};
   push.limit = limit;
+  reduce("fit_window", bound_, push, faces, passes);
+}
+
+void Fitter::reduce(const char* pass, const gpu::ComputePipeline& kernel, BoundsPush push, uint32_t faces,
+                    gpu::PassRecorder& passes) {
+  push.frame = view_buffer_.address();
+  push.samples = samples_.address();
+  push.bounds = bounds_.address();
+  push.count = pixels_;
   constexpr uint32_t per_group = group_lanes * samples_per_lane;
   passes.device_pass(pass, [&](gpu::Commands& commands) {
     commands.update(view_buffer_, &view_, sizeof view_);
     commands.fill(bounds_, 0xffffffffU);
     commands.barrier();
-    for (uint32_t i = 0; i < faces; ++i) {
-      push.face = first_face + i;
-      commands.dispatch(reduce_, push, (push.count + per_group - 1) / per_group);
-    }
+    for (push.face = 0; push.face < faces; ++push.face)
+      commands.dispatch(kernel, push, (push.count + per_group - 1) / per_group);
     commands.barrier();
     commands.copy(bounds_, read_back_, bounds_.bytes());
   });

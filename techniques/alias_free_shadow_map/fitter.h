@@ -1,4 +1,5 @@
-// Where the lists lie in the light's view: its direction and windows, fitted to the view samples or to the scene.
+// Where the lists lie in the light's view: its direction and windows, fitted to the view samples or to the
+// scene.
 #pragma once
 #include "gpu/pass_recorder.h"
 #include "gpu/pipeline.h"
@@ -12,31 +13,34 @@ class Fitter {
  public:
   explicit Fitter(const Params& params) : params_(params) {}
   void setup(const Case& c);
-  // Passes "fit_box" and "fit_window" (device), "fit" (host).
+  // Passes "gather" and "fit_window" (device), "fit" (host).
   const LightView& run(const RenderInput& in, gpu::PassRecorder& passes);
   // Faces that some view sample is seen through.
   bool used(uint32_t face) const { return used_[face]; }
-  // Where the view of the last run() is on the device.
+  // Of the last run(), on the device: the view; and per pixel q, triangle to leave out, or not_listed.
   const gpu::Buffer& view_buffer() const { return view_buffer_; }
-  uint64_t bytes() const { return view_buffer_.bytes() + bounds_.bytes() + read_back_.bytes(); }
+  const gpu::Buffer& samples() const { return samples_; }
+  uint64_t bytes() const {
+    return view_buffer_.bytes() + samples_.bytes() + bounds_.bytes() + read_back_.bytes();
+  }
 
  private:
   void fit_samples(const RenderInput& in, gpu::PassRecorder& passes);
   void fit_scene(const Case& c);
-  void reduce(const char* pass, uint32_t first_face, uint32_t faces, float limit, const RenderInput& in,
+  void gather(const RenderInput& in, gpu::PassRecorder& passes);
+  void bound(uint32_t faces, float limit, gpu::PassRecorder& passes);
+  void reduce(const char* pass, const gpu::ComputePipeline& kernel, BoundsPush push, uint32_t faces,
               gpu::PassRecorder& passes);
   void cover(uint32_t face, const Extent& extent);
 
   Params params_;
-  gpu::ComputePipeline reduce_;
-  gpu::Buffer view_buffer_, bounds_, read_back_;
+  gpu::ComputePipeline gather_, bound_;
+  gpu::Buffer view_buffer_, samples_, bounds_, read_back_;
+  uint32_t pixels_ = 0;
   LightPoint light_{};
   LightView view_{};
   double diagonal_ = 0;
   bool used_[most_faces] = {};
 };
-
-// Where the shadow segments begin, per pixel.
-const gpu::Buffer& segment_origins(const Params& params, const ViewSamples& view);
 
 }  // namespace penumbra::alias_free

@@ -3,16 +3,16 @@
 #include <algorithm>
 
 #include "shaders/alias_free_bin_samples.h"
-#include "techniques/alias_free_shadow_map/fitter.h"
 
 namespace penumbra::alias_free {
 
 void SampleLists::setup(const Case& c) {
   gpu::Device& device = *c.device;
-  for (uint32_t stage = 0; stage < 2; ++stage) {
-    const gpu::Specialization constants[] = {{0, stage}, {3, at_infinity(c.frame->light)}};
-    bin_[stage] = gpu::ComputePipeline(device, alias_free_bin_samples_spv, sizeof(BinPush), constants);
-  }
+  const auto make = [&](uint32_t stage, uint32_t cube) {
+    const gpu::Specialization constants[] = {{0, stage}, {1, cube}, {3, at_infinity(c.frame->light)}};
+    return gpu::ComputePipeline(device, alias_free_bin_samples_spv, sizeof(BinPush), constants);
+  };
+  count_[0] = make(0, 0), count_[1] = make(0, 1), fill_ = make(1, 0);
   scan_.setup(device, std::min(device.caps().subgroup_size, 32U));
 }
 
@@ -29,35 +29,31 @@ void SampleLists::allocate(gpu::Device& device, uint32_t pixels) {
   ensure(blocked_, (std::size_t{pixels} + 31) / 32 * 4, "shadow bits");
 }
 
-void SampleLists::run(const RenderInput& in, const LightView& view, const gpu::Buffer& view_buffer,
+void SampleLists::run(uint32_t pixels, const LightView& view, const Fitter& fitter,
                       gpu::PassRecorder& passes) {
-  const ViewSamples& samples = *in.view_samples;
-  const auto pixels = static_cast<uint32_t>(samples.width() * samples.height());
   texels_ = view.face_count * view.grid_size * view.grid_size;
   allocate(passes.device(), pixels);
   BinPush push{};
-  push.frame = view_buffer.address();
-  push.position = samples.position().address();
-  push.origin = segment_origins(params_, samples).address();
-  push.normal = samples.geometric_normal().address();
-  push.triangle = samples.triangle().address();
+  push.frame = fitter.view_buffer().address();
+  push.samples = fitter.samples().address();
   push.lengths = lengths_.address();
   push.offsets = offsets_.address();
   push.texels = pixel_texels_.address();
   push.slots = slots_.address();
   push.lists = lists_.address();
   push.count = pixels;
-  const uint64_t groups = (uint64_t{pixels} + group_lanes - 1) / group_lanes;
+  constexpr uint32_t per_group = group_lanes * samples_per_lane;
+  const uint64_t groups = (uint64_t{pixels} + per_group - 1) / per_group;
   passes.device_pass("count", [&](gpu::Commands& commands) {
     commands.fill(lengths_, 0);
     commands.fill(blocked_, 0);
     commands.barrier();
-    commands.dispatch(bin_[0], push, groups);
+    commands.dispatch(count_[view.face_count > 1], push, groups);
   });
   passes.device_pass("scan", [&](gpu::Commands& commands) {
     scan_.record(commands, lengths_, offsets_, scratch_, texels_ + 1);
   });
-  passes.device_pass("fill", [&](gpu::Commands& commands) { commands.dispatch(bin_[1], push, groups); });
+  passes.device_pass("fill", [&](gpu::Commands& commands) { commands.dispatch(fill_, push, groups); });
 }
 
 uint64_t SampleLists::list_bytes() const {

@@ -3,8 +3,7 @@
 #include "gpu/pass_recorder.h"
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
-#include "techniques/alias_free_shadow_map/params.h"
-#include "techniques/alias_free_shadow_map/shaders/shared.h"
+#include "techniques/alias_free_shadow_map/fitter.h"
 #include "techniques/common/prefix_scan.h"
 
 namespace penumbra::alias_free {
@@ -14,13 +13,13 @@ class SampleLists {
   explicit SampleLists(const Params& params) : params_(params) {}
   void setup(const Case& c);
   // Passes "count", "scan", "fill". All bits of blocked() are 0 afterwards.
-  void run(const RenderInput& in, const LightView& view, const gpu::Buffer& view_buffer, gpu::PassRecorder& passes);
+  void run(uint32_t pixels, const LightView& view, const Fitter& fitter, gpu::PassRecorder& passes);
 
-  const gpu::Buffer& lengths() const { return lengths_; }   // per texel, and one 0
-  const gpu::Buffer& offsets() const { return offsets_; }   // per texel, and the end of the last
-  const gpu::Buffer& slots() const { return slots_; }       // per pixel: place in the array, no_slot
-  const gpu::Buffer& lists() const { return lists_; }       // q, triangle
-  const gpu::Buffer& blocked() const { return blocked_; }   // a bit per place
+  const gpu::Buffer& lengths() const { return lengths_; }  // per texel, and one 0
+  const gpu::Buffer& offsets() const { return offsets_; }  // per texel, and the end of the last
+  const gpu::Buffer& slots() const { return slots_; }      // per pixel: place in the array, no_slot
+  const gpu::Buffer& lists() const { return lists_; }      // q, triangle to leave out
+  const gpu::Buffer& blocked() const { return blocked_; }  // a bit per place
   uint32_t texels() const { return texels_; }
   uint64_t bytes() const;
   // Offsets, lengths and the arrays of the lists themselves.
@@ -30,7 +29,7 @@ class SampleLists {
   void allocate(gpu::Device& device, uint32_t pixels);
 
   Params params_;
-  gpu::ComputePipeline bin_[2];
+  gpu::ComputePipeline count_[2], fill_;  // [six faces]
   PrefixScan scan_;
   gpu::Buffer lengths_, offsets_, scratch_, pixel_texels_, slots_, lists_, blocked_;
   uint32_t texels_ = 0;

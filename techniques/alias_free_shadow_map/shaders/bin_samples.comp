@@ -1,40 +1,59 @@
-// View samples to the lists of their texels [Sintorn 2008, sec. 3.1]. STAGE 0 counts, and keeps each one's place in its
+// View samples to the lists of their texels [Sintorn2008, sec. 3.1]. STAGE 0 counts, and keeps each one's place in its
 // list; between the stages the lengths are summed up; STAGE 1 writes the lists, one dense array.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "techniques/alias_free_shadow_map/shaders/buffers.glsl"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint STAGE = 0;
+layout(constant_id = 1) const bool CUBE = false;
 layout(push_constant, scalar) uniform Push { BinPush push; };
 
-uint texel_of(vec3 q) {
-  const uint n = push.frame.f.grid_size;
-  const uint index = push.frame.f.face_count > 1u ? cube_face(q) : 0u;
-  const Face face = push.frame.f.faces[index];
+uint texel_of(vec3 q, const Face face, uint row, uint n) {
   const vec2 at = (project(face, q).xy - face.window.xy) * face.window.zw;
   const uvec2 texel = uvec2(clamp(at, vec2(0.0), vec2(float(n - 1u))));
-  return (index * n + texel.y) * n + texel.x;
+  return (row + texel.y) * n + texel.x;
 }
 
-void main() {
-  const uint pixel = linear_group() * group_lanes + gl_LocalInvocationIndex;
-  if (pixel >= push.count) return;
-  if (STAGE == 0u) {
-    const vec4 position = push.position.at[pixel];
+// What is the same for all view samples is loaded once for several of them: loads are what this kernel costs.
+void count_samples(uint first) {
+  const uint n = push.frame.f.grid_size;
+  const Face face = push.frame.f.faces[0];
+  for (uint i = 0u; i < samples_per_lane; ++i) {
+    const uint pixel = first + i * group_lanes;
+    if (pixel >= push.count) break;
+    const uvec4 s = push.samples.at[pixel];
+    const vec3 q = uintBitsToFloat(s.xyz);
     uint texel = no_slot, place = no_slot;
-    if (position.w > 0.0 && may_be_lit(position.xyz, push.normal.at[pixel].xyz, push.frame.f.light, push.frame.f.emission)) {
-      texel = texel_of(push.origin.at[pixel].xyz - push.frame.f.center.xyz);
+    if (s.w != not_listed) {
+      const uint index = CUBE ? cube_face(q) : 0u;
+      if (CUBE)
+        texel = texel_of(q, push.frame.f.faces[index], index * n, n);
+      else
+        texel = texel_of(q, face, 0u, n);
       place = atomicAdd(push.lengths.at[texel], 1u);
     }
     push.texels.at[pixel] = texel;
     push.slots.at[pixel] = place;
-  } else {
-    const uint texel = push.texels.at[pixel];
-    if (texel == no_slot) return;
-    const uint slot = push.offsets.at[texel] + push.slots.at[pixel];
-    push.slots.at[pixel] = slot;
-    const vec3 q = push.origin.at[pixel].xyz - push.frame.f.center.xyz;
-    const uint own = push.frame.f.leave_out_own != 0u ? push.triangle.at[pixel] : no_slot;
-    push.lists.at[slot] = vec4(q, uintBitsToFloat(own));
   }
+}
+
+void fill_lists(uint first) {
+  for (uint i = 0u; i < samples_per_lane; ++i) {
+    const uint pixel = first + i * group_lanes;
+    if (pixel >= push.count) break;
+    const uint texel = push.texels.at[pixel];
+    if (texel != no_slot) {
+      const uint slot = push.offsets.at[texel] + push.slots.at[pixel];
+      push.slots.at[pixel] = slot;
+      push.lists.at[slot] = push.samples.at[pixel];
+    }
+  }
+}
+
+void main() {
+  const uint first = linear_group() * group_lanes * samples_per_lane + gl_LocalInvocationIndex;
+  if (STAGE == 0u)
+    count_samples(first);
+  else
+    fill_lists(first);
 }

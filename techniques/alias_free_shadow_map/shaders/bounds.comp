@@ -1,32 +1,52 @@
-// Bounds of the view samples that face the light: the box of their q, or what they cover of a face.
+// Bounds of the view samples that face the light. GATHER: their box, relative to the light, while they are written as all
+// later kernels read them; else: what they cover of a face.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "techniques/alias_free_shadow_map/shaders/buffers.glsl"
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool GATHER = false;
+layout(constant_id = 4) const bool OFFSET = false;   // shadow segments begin at P', and no triangle is left out
 layout(push_constant, scalar) uniform Push { BoundsPush push; };
 
 shared vec3 group_lo[group_lanes];
 shared vec3 group_hi[group_lanes];
 
+uvec4 gathered(uint pixel, vec4 light, vec4 emission, vec3 center) {
+  const vec4 position = push.position.at[pixel];
+  const bool listed = position.w > 0.0 && may_be_lit(position.xyz, push.normal.at[pixel].xyz, light, emission);
+  vec3 q = position.xyz - center;
+  uint own = no_own;
+  if (OFFSET)
+    q = push.origin.at[pixel].xyz - center;
+  else
+    own = push.triangle.at[pixel];
+  return uvec4(floatBitsToUint(q), listed ? own : not_listed);
+}
+
 void main() {
-  const uint slot = push.face == most_faces ? 0u : push.face;
   const float infinity = uintBitsToFloat(0x7f800000u);
   const uint lane = gl_LocalInvocationIndex;
   const bool cube = push.frame.f.face_count > 1u;
   const vec4 light = push.frame.f.light, emission = push.frame.f.emission;
   const vec3 center = push.frame.f.center.xyz;
-  const Face face = push.frame.f.faces[slot];
+  const Face face = push.frame.f.faces[push.face];
   vec3 lo = vec3(infinity), hi = vec3(-infinity);
   bool outside = false;
   const uint first = linear_group() * group_lanes * samples_per_lane + lane;
   for (uint i = 0u; i < samples_per_lane; ++i) {
     const uint pixel = first + i * group_lanes;
     if (pixel >= push.count) break;
-    const vec4 position = push.position.at[pixel];
-    const vec3 q = push.origin.at[pixel].xyz - center;
-    bool counts = position.w > 0.0 && may_be_lit(position.xyz, push.normal.at[pixel].xyz, light, emission);
+    uvec4 s;
+    if (GATHER) {
+      s = gathered(pixel, light, emission, center);
+      push.samples.at[pixel] = s;
+    } else {
+      s = push.samples.at[pixel];
+    }
+    const vec3 q = uintBitsToFloat(s.xyz);
+    bool counts = s.w != not_listed;
     vec3 p = q;
-    if (push.face != most_faces) {
+    if (!GATHER) {
       p = project(face, q);
       counts = counts && (!cube || cube_face(q) == push.face);
       const bool inside = (PARALLEL || p.z > 0.0) && abs(p.x) <= push.limit && abs(p.y) <= push.limit;
@@ -36,7 +56,7 @@ void main() {
     lo = counts ? min(lo, p) : lo;
     hi = counts ? max(hi, p) : hi;
   }
-  if (outside) push.bounds.at[slot].outside = 0u;
+  if (outside) push.bounds.at[push.face].outside = 0u;
   group_lo[lane] = lo;
   group_hi[lane] = hi;
   for (uint width = group_lanes / 2u; width > 0u; width /= 2u) {
@@ -48,7 +68,7 @@ void main() {
   }
   if (lane == 0u && group_lo[0].x <= group_hi[0].x)
     for (int c = 0; c < 3; ++c) {
-      atomicMin(push.bounds.at[slot].lo[c], ordered(group_lo[0][c]));
-      atomicMin(push.bounds.at[slot].hi[c], ~ordered(group_hi[0][c]));
+      atomicMin(push.bounds.at[push.face].lo[c], ordered(group_lo[0][c]));
+      atomicMin(push.bounds.at[push.face].hi[c], ~ordered(group_hi[0][c]));
     }
 }

@@ -15,7 +15,9 @@ struct Footprint {
   vec2 lo, hi;        // texels, continuous, not yet clamped to the face
 };
 
-Caster load_caster(uint t) {
+// `entry`: 2 triangle + (of a closed mesh ? 1 : 0).
+Caster load_caster(uint entry) {
+  const uint t = entry >> 1u;
   const vec3 center = push.frame.f.center.xyz;
   const uint i = 3u * t;
   const vec3 a = push.positions.at[push.indices.at[i]] - center, b = push.positions.at[push.indices.at[i + 1u]] - center,
@@ -23,8 +25,10 @@ Caster load_caster(uint t) {
   return make_caster(a, b, c, push.frame.f.light);
 }
 
-bool casts(uint t, const Caster caster) {
-  const bool closed = (push.closed.at[t >> 5u] >> (t & 31u) & 1u) != 0u;
+uint entry_of(uint t) { return 2u * t + (push.closed.at[t >> 5u] >> (t & 31u) & 1u); }
+
+bool casts(uint entry, const Caster caster) {
+  const bool closed = (entry & 1u) != 0u;
   const bool front = caster.light_side > 0.0 && (INNER ? closed : !closed || push.frame.f.both_faces != 0u);
   // Closed meshes' triangles that turn away must meet their own view samples, see test().
   const bool meets_own = closed && !INNER;
@@ -85,16 +89,37 @@ uvec2 row_range(const Footprint f, const Face face, int y, uint grid_size) {
   return uvec2(push.offsets.at[row + uint(clamp(x0, 0.0, last))], push.offsets.at[row + uint(clamp(x1, 0.0, last)) + 1u]);
 }
 
-// A view sample that faces the light on a triangle that does not is seen from the inside of a closed mesh: through a
-// silhouette's rounding, or by a camera within. There, light comes in through triangles that face it.
-void test(uint t, const Caster caster, uint slot) {
-  const vec4 s = push.lists.at[slot];
-  const bool own = floatBitsToUint(s.w) == t;
-  if (hides(caster, s.xyz) && !own) atomicOr(push.blocked.at[slot >> 5u], 1u << (slot & 31u));
-  if (!INNER && own && caster.light_side < 0.0) {
-    const uint place = atomicAdd(push.progress.p.inner_count, 1u);
-    if (place < most_inner) push.progress.p.inner[place] = slot;
+// Sets `bits` of the array of bits, bit 0 of which is that of `slot`.
+void set_blocked(uint slot, uint bits) {
+  const uint low = bits << (slot & 31u), high = (slot & 31u) == 0u ? 0u : bits >> (32u - (slot & 31u));
+  if (low != 0u) atomicOr(push.blocked.at[slot >> 5u], low);
+  if (high != 0u) atomicOr(push.blocked.at[(slot >> 5u) + 1u], high);
+}
+
+// A view sample that faces the light on a triangle of a closed mesh that does not is seen from the mesh's inside:
+// through a silhouette's rounding, or by a camera within. There, light comes in through triangles that face it.
+void add_inner(uint slot, uint bits) {
+  do {
+    if (bits != 0u) {
+      const uint place = atomicAdd(push.progress.p.inner_count, 1u);
+      if (place < most_inner) push.progress.p.inner[place] = slot + uint(findLSB(bits));
+      bits &= bits - 1u;
+    }
+  } while (bits != 0u);
+}
+
+// At most 32 view samples from `slot` on. Bits are gathered first: atomics cost more than tests.
+void test(uint entry, const Caster caster, uint slot, uint count) {
+  const uint t = entry >> 1u;
+  uint hidden = 0u, inner = 0u;
+  for (uint i = 0u; i < count; ++i) {
+    const uvec4 s = push.lists.at[slot + i];
+    const bool own = s.w == t;
+    hidden |= hides(caster, uintBitsToFloat(s.xyz)) && !own ? 1u << i : 0u;
+    inner |= own ? 1u << i : 0u;
   }
+  set_blocked(slot, hidden);
+  if (!INNER && (entry & 1u) != 0u && caster.light_side < 0.0) add_inner(slot, inner);
 }
 
 void count_pairs(uint pairs) {

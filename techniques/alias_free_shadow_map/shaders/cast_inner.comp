@@ -4,11 +4,18 @@
 #include "techniques/alias_free_shadow_map/shaders/cast.glsl"
 
 void main() {
-  const uint t = linear_group() * group_lanes + gl_LocalInvocationIndex;
-  if (t >= push.count) return;
-  const Caster caster = load_caster(t);
-  if (!casts(t, caster)) return;
   const uint count = min(push.progress.p.inner_count, most_inner);
-  for (uint i = 0u; i < count; ++i) test(t, caster, push.progress.p.inner[i]);
-  count_pairs(count);
+  const uint first = linear_group() * group_lanes * triangles_per_lane + gl_LocalInvocationIndex;
+  uint pairs = 0u;
+  for (uint i = 0u; i < triangles_per_lane; ++i) {
+    const uint t = first + i * group_lanes;
+    if (t >= push.count) break;
+    const uint entry = entry_of(t);
+    const Caster caster = load_caster(entry);
+    if (casts(entry, caster)) {
+      for (uint k = 0u; k < count; ++k) test(entry, caster, push.progress.p.inner[k], 1u);
+      pairs += count;
+    }
+  }
+  count_pairs(pairs);
 }

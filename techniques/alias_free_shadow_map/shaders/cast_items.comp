@@ -19,18 +19,11 @@ void main() {
   const Face face = push.frame.f.faces[push.face];
   const Footprint f = footprint(caster, face);
   const uvec2 range = row_range(f, face, int((item.y >> 8u) + (single ? 0u : lane)), push.frame.f.grid_size);
-  const uint step = single ? item_rows : 1u;
-  const uint length = (range.y - range.x + step - 1u) / step;
+  // Of one row: a contiguous part for each invocation.
+  const uint part = single ? (range.y - range.x + item_rows - 1u) / item_rows : range.y - range.x;
+  const uint begin = min(range.x + (single ? lane * part : 0u), range.y), length = min(part, range.y - begin);
   if (push.first == 0u && length > TURNS) atomicMax(push.progress.p.longest, length);
-  const uint begin = range.x + push.first * step + (single ? lane : 0u);
-  uint turns = length > push.first ? min(length - push.first, TURNS) : 0u;
-  uint pairs = 0u;
-  for (uint i = 0u; i < turns; ++i) {
-    const uint slot = begin + i * step;
-    if (slot < range.y) {
-      test(item.x, caster, slot);
-      pairs++;
-    }
-  }
-  count_pairs(pairs);
+  const uint turns = length > push.first ? min(length - push.first, TURNS) : 0u;
+  for (uint i = 0u; i < turns; i += 32u) test(item.x, caster, begin + push.first + i, min(turns - i, 32u));
+  count_pairs(turns);
 }

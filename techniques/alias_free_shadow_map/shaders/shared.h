@@ -19,11 +19,14 @@ using vec4 = Vec4f;
 SHARED_CONSTANT most_faces = 6u;
 SHARED_CONSTANT group_lanes = 64u;
 SHARED_CONSTANT samples_per_lane = 16u;   // of the bounds' reduction
-SHARED_CONSTANT small_rows = 8u;          // triangles over at most so many rows of texels are done by one invocation,
-SHARED_CONSTANT small_range = 48u;        // as far as their rows hold at most so many view samples each
+SHARED_CONSTANT triangles_per_lane = 8u;  // of the cull
+SHARED_CONSTANT small_rows = 16u;         // triangles over at most so many rows of texels are done by one invocation,
+SHARED_CONSTANT small_range = 64u;        // as far as their rows hold at most so many view samples each
 SHARED_CONSTANT item_rows = 16u;          // all else becomes items of so many rows, done by as many invocations
 SHARED_CONSTANT most_inner = 64u;         // view samples on a closed mesh's inside that are tested one by one
 SHARED_CONSTANT no_slot = 0xffffffffu;
+SHARED_CONSTANT no_own = 0xfffffffeu;      // a view sample with no triangle to leave out
+SHARED_CONSTANT not_listed = 0xffffffffu;  // ... that faces away from the light
 
 // A window of the light's view, divided into grid_size x grid_size texels. With q relative to LightView::center:
 // u = dot(right, q) / depth, v = dot(down, q) / depth, depth = dot(forward, q), or 1 for a light at infinity.
@@ -42,7 +45,7 @@ struct LightView {
   uint face_count;             // 1, or 6: the faces of a cube about the light
   uint grid_size;
   uint both_faces;             // 1: triangles of closed meshes cast with both sides
-  uint leave_out_own;          // 1: the triangle of a view sample casts no shadow on it
+  uint unused;
 };
 
 // Minima of order-preserving integers (`hi` complemented), reset by one fill with ones.
@@ -58,7 +61,8 @@ struct Progress {
   uint pairs[2];     // triangles tested against view samples (counting only): low, high word
   uint inner_count;  // view samples on the inside of closed meshes, and the places of the first
   uint inner[64];
-  uint unused[3];
+  uint caster_count;
+  uint unused[2];
 };
 
 struct BoundsPush {
@@ -66,24 +70,23 @@ struct BoundsPush {
   ADDRESS_OF(Vec4Array) position;
   ADDRESS_OF(Vec4Array) origin;
   ADDRESS_OF(Vec4Array) normal;
+  ADDRESS_OF(UintArray) triangle;
+  ADDRESS_OF(UVec4Array) samples;
   ADDRESS_OF(BoundsArray) bounds;
   uint count;     // pixels
-  uint face;      // most_faces: the box of q; else (u, v) in this face
+  uint face;      // whose (u, v) are bounded
   float limit;    // of |u| and |v|
   uint unused;
 };
 
 struct BinPush {
   ADDRESS_OF(FrameRef) frame;
-  ADDRESS_OF(Vec4Array) position;
-  ADDRESS_OF(Vec4Array) origin;
-  ADDRESS_OF(Vec4Array) normal;
-  ADDRESS_OF(UintArray) triangle;
+  ADDRESS_OF(UVec4Array) samples;  // per pixel: q, triangle to leave out (no_own: none; not_listed)
   ADDRESS_OF(UintArray) lengths;   // per texel
   ADDRESS_OF(UintArray) offsets;   // per texel
   ADDRESS_OF(UintArray) texels;    // per pixel: its texel; no_slot: in no list
   ADDRESS_OF(UintArray) slots;     // per pixel: its place in its texel's list, then in the array of all lists
-  ADDRESS_OF(Vec4Array) lists;     // q, triangle
+  ADDRESS_OF(UVec4Array) lists;    // samples in the order of the lists
   uint count;
   uint unused;
 };
@@ -94,13 +97,14 @@ struct CastPush {
   ADDRESS_OF(UintArray) indices;
   ADDRESS_OF(UintArray) closed;    // a bit per triangle
   ADDRESS_OF(UintArray) offsets;
-  ADDRESS_OF(Vec4Array) lists;
+  ADDRESS_OF(UVec4Array) lists;
   ADDRESS_OF(UintArray) blocked;   // a bit per view sample, in the order of the lists
-  ADDRESS_OF(ItemArray) items;     // triangle; first row, rows
+  ADDRESS_OF(UintArray) casters;   // 2 triangle + (of a closed mesh ? 1 : 0)
+  ADDRESS_OF(ItemArray) items;     // caster; first row, rows
   ADDRESS_OF(ProgressRef) progress;
   uint face;
-  uint first;      // triangle, or view sample of each range of an item
-  uint count;      // triangles, or items
+  uint first;      // caster, or view sample of each range of an item
+  uint count;      // triangles, casters or items
   uint groups;     // dispatched, for their interleaving
 };
 
@@ -114,8 +118,8 @@ struct ResolvePush {
 
 #ifdef __cplusplus
 static_assert(sizeof(Face) == 80 && sizeof(LightView) == 80 + 6 * 80 + 16 && offsetof(LightView, face_count) == 560);
-static_assert(sizeof(SampleBounds) == 32 && sizeof(Progress) == 16 + 68 * 4 && sizeof(BoundsPush) == 56);
-static_assert(sizeof(BinPush) == 88 && sizeof(CastPush) == 88 && sizeof(ResolvePush) == 32);
+static_assert(sizeof(SampleBounds) == 32 && sizeof(Progress) == 16 + 68 * 4 && sizeof(BoundsPush) == 72);
+static_assert(sizeof(BinPush) == 64 && sizeof(CastPush) == 96 && sizeof(ResolvePush) == 32);
 }  // namespace penumbra::alias_free
 #endif
 #undef SHARED_CONSTANT
