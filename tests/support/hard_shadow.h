@@ -32,14 +32,19 @@ class HardShadow {
     return off;
   }
 
-  // In double precision the pixel has the technique's answer when P moves on its surface by at most this
-  // share of a pixel.
+  // In double precision the pixel has the technique's answer when P moves by at most this share of a pixel:
+  // anywhere (the oracle's shortest move: a segment that comes to touch a triangle is blocked), or on its
+  // surface.
   bool flips(std::size_t pixel, bool blocked, double share) const {
-    for (const double reach : {0.0, 0.25, 0.5, 1.0})
+    if (blocked_at(pixel, position(pixel)) == blocked) return true;
+    if (oracle_.explain(from(pixel, position(pixel)), towards(), own(pixel), share * pixel_width(pixel))
+            .within(share * pixel_width(pixel)))
+      return true;
+    for (const double reach : {0.1, 0.25, 0.5, 1.0})
       for (int k = 0; k < 32; ++k) {
-        const double angle = 2 * std::numbers::pi * k / 32;
-        const double x = std::cos(angle) * reach * share, y = std::sin(angle) * reach * share;
-        if (blocked_at(pixel, moved(pixel, x, y)) == blocked) return true;
+        const double angle = k * std::numbers::pi / 16;
+        const Vec3d p = moved(pixel, std::cos(angle) * reach * share, std::sin(angle) * reach * share);
+        if (blocked_at(pixel, p) == blocked) return true;
       }
     return false;
   }
@@ -64,27 +69,40 @@ class HardShadow {
  private:
   const ViewSamplesHost& view() const { return stage_.view.host(); }
 
-  // Where the ray through (x, y) pixels beside the centre meets the plane of the pixel's surface.
+  Vec3d position(std::size_t pixel) const { return Vec3d(view().position[pixel].xyz()); }
+  // Where the shadow segment of a view sample at p begins, and the triangle that it leaves out.
+  Vec3d from(std::size_t pixel, Vec3d p) const {
+    if (origin_ == ReferenceOrigin::exact) return p;
+    return p + (Vec3d(view().origin[pixel].xyz()) - position(pixel));
+  }
+  uint32_t own(std::size_t pixel) const {
+    return origin_ == ReferenceOrigin::exact ? view().triangle[pixel] : no_triangle;
+  }
+  Vec4d towards() const {
+    const Vec4f l = stage_.light_samples.points[0];
+    return {l.x, l.y, l.z, l.w};
+  }
+  double pixel_width(std::size_t pixel) const {
+    const double fov = double(stage_.frame.camera.vertical_fov_degrees) * std::numbers::pi / 180;
+    return 2 * std::tan(0.5 * fov) / view().height * double(view().position[pixel].w);
+  }
+  // P moved by x, y pixels on the plane of its surface.
   Vec3d moved(std::size_t pixel, double x, double y) const {
     const Camera& camera = stage_.frame.camera;
     const auto width = static_cast<std::size_t>(view().width);
     const double cx = double(pixel % width) + 0.5, cy = double(pixel / width) + 0.5;
-    const Vec3d p(view().position[pixel].xyz()), n(view().geometric_normal[pixel].xyz()), eye(camera.eye);
+    const Vec3d p = position(pixel), n(view().geometric_normal[pixel].xyz()), eye(camera.eye);
     const auto hit = [&](double px, double py) {
       const Vec3d d = camera.ray_direction(px, py, view().width, view().height);
       return d * (dot(n, p - eye) / dot(n, d));
     };
-    // Relative to the centre: P itself is rounded to float, which must not count as a move.
+    // Relative to the centre: that P itself is rounded to float must not count as a move.
     return p + (hit(cx + x, cy + y) - hit(cx, cy));
   }
   bool blocked_at(std::size_t pixel, Vec3d p) const {
     const Vec3d n(view().geometric_normal[pixel].xyz());
-    const Vec4f sample = stage_.light_samples.points[0];
-    const Vec4d towards{sample.x, sample.y, sample.z, sample.w};
-    if (judge_horizon(light_, p, n, towards).blocked) return true;
-    if (origin_ == ReferenceOrigin::exact) return oracle_.blocked(p, towards, view().triangle[pixel]);
-    const Vec3d offset = Vec3d(view().origin[pixel].xyz()) - Vec3d(view().position[pixel].xyz());
-    return oracle_.blocked(p + offset, towards);
+    return judge_horizon(light_, p, n, towards()).blocked ||
+           oracle_.blocked(from(pixel, p), towards(), own(pixel));
   }
 
   const Stage& stage_;

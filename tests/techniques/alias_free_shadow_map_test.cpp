@@ -67,10 +67,9 @@ TEST_P(AliasFreeScene, DiffersFromEmbreeInTiesAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(At1024, AliasFreeScene,
-                         ::testing::Values(Place{"bunny", "lamp"}, Place{"bunny", "sun"},
-                                           Place{"torus_knot", "lamp"}, Place{"torus_knot", "sun"},
-                                           Place{"columns", "lamp"}, Place{"bird_nest", "lamp"},
-                                           Place{"bird_nest", "sun"}, Place{"dragon", "lamp"}),
+                         ::testing::Values(Place{"bunny", "lamp"}, Place{"torus_knot", "lamp"},
+                                           Place{"torus_knot", "sun"}, Place{"columns", "lamp"},
+                                           Place{"bird_nest", "lamp"}, Place{"bird_nest", "sun"}),
                          [](const auto& place) {
                            return std::string(place.param.scene) + "_" + place.param.light;
                          });

@@ -55,7 +55,7 @@ TEST_P(PrefixScanOf, EqualsSumsOnTheHost) {
 
 // The sizes between which blocks change, and more values than 16,384 blocks of 32 per lane hold for 32 lanes.
 INSTANTIATE_TEST_SUITE_P(Sizes, PrefixScanOf,
-                         ::testing::Values(1, 2, 255, 256, 257, 65537, 4194304, 4194561, 16777216, 20000001));
+                         ::testing::Values(1, 2, 255, 256, 257, 65537, 4194304, 4194561, 20000001));
 
 }  // namespace
 }  // namespace penumbra::testing
