@@ -4,6 +4,8 @@
 #include <array>
 #include <unordered_map>
 
+#include "compare/significance.h"
+
 namespace penumbra::compare {
 namespace {
 
@@ -59,11 +61,13 @@ bool same_setting(const json& a, const json& b) {
          });
 }
 
+// Median frame time; 0 where there is none.
 double frame_ms(const json& point) {
-  const json stat = point.value("timing", json::object()).value("frame_ms", json::object());
-  return stat.is_object() && stat.contains("median") && stat.at("median").is_number()
-             ? stat.at("median").get<double>()
-             : 0;
+  const auto all = figures(point);
+  const auto stat = all.find("timing.frame_ms");
+  if (stat == all.end()) return 0;
+  const auto samples = stat->second.at("samples").get<std::vector<double>>();
+  return samples.empty() ? 0 : median(samples);
 }
 
 bool can_anchor(const Pair& pair, const Thresholds& thresholds) {
@@ -101,17 +105,24 @@ std::vector<Pair> match(const RunResults& baseline, const RunResults& current) {
 std::vector<const Pair*> anchors(const std::vector<Pair>& pairs, const Thresholds& thresholds) {
   std::vector<const Pair*> out(pairs.size(), nullptr);
   if (thresholds.anchor.empty()) return out;
-  std::unordered_map<std::string, std::vector<const Pair*>> by_scene;
+  struct Candidate {
+    const Pair* pair;
+    double ms;
+  };
+  std::unordered_map<std::string, std::vector<Candidate>> by_scene;
   for (const Pair& pair : pairs)
-    if (can_anchor(pair, thresholds)) by_scene[pair.baseline->at("scene")].push_back(&pair);
+    if (can_anchor(pair, thresholds))
+      by_scene[pair.baseline->at("scene")].push_back({&pair, frame_ms(*pair.baseline)});
+  // The fastest first, so that the first that fits is the anchor.
+  for (auto& [scene, candidates] : by_scene) std::ranges::stable_sort(candidates, {}, &Candidate::ms);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!pairs[i].baseline) continue;
     const auto scene = by_scene.find(pairs[i].baseline->at("scene"));
     if (scene == by_scene.end()) continue;
-    for (const Pair* candidate : scene->second)
-      if (same_setting(*pairs[i].baseline, *candidate->baseline) &&
-          (!out[i] || frame_ms(*candidate->baseline) < frame_ms(*out[i]->baseline)))
-        out[i] = candidate;
+    const auto found = std::ranges::find_if(scene->second, [&](const Candidate& c) {
+      return same_setting(*pairs[i].baseline, *c.pair->baseline);
+    });
+    if (found != scene->second.end()) out[i] = found->pair;
   }
   return out;
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "compare/pool.h"
 #include "core/error.h"
 #include "core/machine.h"
 
@@ -28,9 +29,19 @@ json parse_file(const fs::path& path) {
   const std::string text = read_file(path);
   try {
     return json::parse(text);
-  } catch (const json::parse_error& e) {
+  } catch (const json::exception& e) {  // also numbers beyond what a double holds
     throw InputError(fmt::format("{}: not JSON: {}", path.string(), e.what()));
   }
+}
+
+using Is = bool (json::*)() const noexcept;
+
+// Members that may be absent, but when there, are of this type. The first that is not, or nothing.
+std::string wrong_member(const json& object, std::initializer_list<const char*> names, Is is,
+                         const char* type) {
+  for (const char* name : names)
+    if (object.contains(name) && !(object.at(name).*is)()) return fmt::format("'{}' is no {}", name, type);
+  return "";
 }
 
 // Why a value is no point's record; empty when it is one.
@@ -41,11 +52,32 @@ std::string no_record(const json& r) {
   if (!r.contains("params") || !r.at("params").is_object()) return "'params' is no object";
   if (!r.contains("frame") || !(r.at("frame").is_null() || r.at("frame").is_number_integer()))
     return "'frame' is neither null nor an integer";
+  return wrong_member(r, {"key", "message", "machine"}, &json::is_string, "string");
+}
+
+// Why a value is no run's header; empty when it is one.
+std::string no_header(const json& run) {
+  if (!run.is_object()) return "not an object";
+  for (const std::string& wrong : {wrong_member(run, {"name", "shard"}, &json::is_string, "string"),
+                                   wrong_member(run, {"complete"}, &json::is_boolean, "boolean"),
+                                   wrong_member(run, {"machines", "machine"}, &json::is_object, "object"),
+                                   wrong_member(run, {"scenes"}, &json::is_array, "array")})
+    if (!wrong.empty()) return wrong;
+  const json scenes = run.value("scenes", json::array());
+  for (const json& scene : scenes)
+    if (!scene.is_object() ||
+        !wrong_member(scene, {"name", "content_hash"}, &json::is_string, "string").empty())
+      return "'scenes' has an entry without its strings";
   return "";
 }
 
+void check_header(const json& run, const fs::path& path) {
+  if (const std::string why = no_header(run); !why.empty())
+    throw InputError(fmt::format("{}: not a run's header: {}.", path.string(), why));
+}
+
 void check_version(const json& object, const fs::path& path) {
-  const json version = object.value("schema_version", json());
+  const json version = object.is_object() ? object.value("schema_version", json()) : json();
   if (version != 1)
     throw InputError(
         fmt::format("{}: /schema_version: found {}, expected 1.", path.string(), version.dump()));
@@ -58,6 +90,7 @@ RunResults from_document(const fs::path& path) {
     throw InputError(
         fmt::format("{}: found no results, expected an object with run and points.", path.string()));
   check_version(document, path);
+  check_header(document.at("run"), path);
   RunResults results{path.string(), document.at("run"), {}};
   std::size_t i = 0;
   for (const json& record : document.at("points")) {
@@ -71,8 +104,7 @@ RunResults from_document(const fs::path& path) {
 
 RunResults from_journal(const fs::path& folder) {
   RunResults results{folder.string(), parse_file(folder / "run.json"), {}};
-  if (!results.run.is_object())
-    throw InputError(fmt::format("{}: not a run's header.", (folder / "run.json").string()));
+  check_header(results.run, folder / "run.json");
   check_version(results.run, folder / "run.json");
   std::ifstream in(folder / "points.jsonl", std::ios::binary);
   std::map<std::string, std::size_t> place;
@@ -86,6 +118,22 @@ RunResults from_journal(const fs::path& folder) {
       results.points[it->second] = essential(record);
   }
   return results;
+}
+
+// A folder whose folders are runs of one config.
+RunResults from_runs(const fs::path& folder) {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (fs::exists(entry.path() / "run.json")) paths.push_back(entry.path());
+  if (paths.empty())
+    throw InputError(fmt::format(
+        "{}: not a run's folder, nor one of runs: no points.jsonl and no results.json.", folder.string()));
+  std::ranges::sort(paths);
+  std::vector<RunResults> runs;
+  for (const fs::path& path : paths) runs.push_back(read_results(path));
+  RunResults pooled = pool(runs);
+  pooled.name = fmt::format("{} ({} runs)", folder.string(), runs.size());
+  return pooled;
 }
 
 json stats_only(const json& timing) {
@@ -123,8 +171,7 @@ RunResults read_results(const fs::path& path) {
   if (fs::is_directory(path, error)) {
     if (fs::exists(path / "points.jsonl", error)) return from_journal(path);
     if (fs::exists(path / "results.json", error)) return from_document(path / "results.json");
-    throw InputError(
-        fmt::format("{}: not a run's folder: no points.jsonl and no results.json.", path.string()));
+    return from_runs(path);
   }
   if (!fs::exists(path, error))
     throw InputError(fmt::format("{}: no such run or results file.", path.string()));

@@ -18,7 +18,8 @@ struct RunResults {
 };
 
 // A folder with points.jsonl (the last record of an id counts, torn lines do not), else its results.json; or
-// a file in results.json's format. Throws InputError.
+// a file in results.json's format; or a folder of such folders, runs of one config that are pooled. Throws
+// InputError.
 RunResults read_results(const std::filesystem::path& path);
 
 // The part of a record that is kept: what identifies it, its status, its times with their samples, memory,

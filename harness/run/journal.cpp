@@ -89,7 +89,8 @@ void Journal::read(Mode mode) {
 void Journal::take(std::string_view line, uint64_t offset, std::size_t number) {
   const auto json = nlohmann::json::parse(line, nullptr, false);
   const bool valid = json.is_object() && json.contains("id") && json["id"].is_string() &&
-                     json.contains("status") && json["status"].is_string();
+                     json.contains("status") && json["status"].is_string() &&
+                     (!json.contains("fingerprint") || json["fingerprint"].is_string());
   if (!valid) {
     if (!line.empty())
       remarks_.push_back(

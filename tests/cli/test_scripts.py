@@ -2,6 +2,7 @@
 import importlib.machinery
 import importlib.util
 import json
+import random
 import subprocess
 import unittest
 
@@ -48,6 +49,32 @@ class Equal(Folder):
         for goal in (("--error", "metrics.rmse"), ("--range", 5, 5)):
             result = call("equal", config, "--technique", "x", "--vary", "mask_size", "--range", 1, 4, "--time-ms", 1, *goal)
             self.assertEqual(result.returncode, 2, result.stderr)
+
+
+class GateQuality(Folder):
+    """The design of the gate, with noise that is known: 3 % a sample, one sample in twenty half as long again."""
+
+    def results(self, spread):
+        rng = random.Random(4)
+
+        def point(technique, ms):
+            times = [ms * rng.lognormvariate(0, spread) * (1.5 if rng.random() < 0.05 else 1) for _ in range(40)]
+            return {"id": technique, "key": technique, "technique": technique, "scene": "s", "frame": 0, "params": {},
+                    "status": "ok", "timing": {"frame_ms": {"median": ms, "samples": times}}, "metrics": {"rmse": 0.01},
+                    "metrics_matched": {"mask_bit_mismatch": 0}}
+        points = [point(t, ms) for t, ms in (("ray_tracing", 30), ("gears", 20), ("shadow_map", 5), ("line_space", 9))]
+        return self.write("results.json", {"schema_version": 1, "run": {}, "points": points})
+
+    def test_it_finds_a_tenth_and_raises_no_false_alarm(self):
+        result = call("gate_quality", "--pairs", 60, "resample", self.results(0.03))
+        counts = json.loads(result.stdout)
+        self.assertEqual(result.returncode, 0, counts)
+        self.assertEqual((counts["pairs"], counts["flipped_bits"], counts["rmse"]), (60, 60, 60))
+
+    def test_noise_that_hides_a_tenth_is_told(self):
+        result = call("gate_quality", "--pairs", 10, "resample", self.results(0.4))
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertLess(json.loads(result.stdout)["slowdowns"], 9)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@
 #include <fstream>
 
 #include "compare/comparison.h"
+#include "compare/pool.h"
+#include "compare/significance.h"
 #include "core/error.h"
 #include "core/machine.h"
 #include "tests/compare/synthetic.h"
@@ -71,6 +73,37 @@ TEST(Results, WhatIsNoneIsRefusedByItsName) {
             std::string::npos);
   EXPECT_NE(message_of<InputError>([&] { read_results(folder / "none"); }).find("no such"),
             std::string::npos);
+}
+
+TEST(Pool, OfRunsHasARunsMedianAsSampleAndKeepsAnchorsBesideTheirTimes) {
+  std::vector<RunResults> runs;
+  for (const double load : {1.0, 3.0, 2.0})  // each run on a machine of another load
+    runs.push_back(run_of({point("gears", times(10 * load)), point("ray_tracing", times(20 * load))}));
+  const RunResults pooled = pool(runs);
+  const auto samples = pooled.points[0]["timing"]["frame_ms"]["samples"].get<std::vector<double>>();
+  ASSERT_EQ(samples.size(), 3U);
+  EXPECT_NEAR(samples[1], 30, 1);
+  const auto anchor = pooled.points[1]["timing"]["frame_ms"]["samples"].get<std::vector<double>>();
+  for (const double r : ratio_samples(samples, anchor)) EXPECT_NEAR(r, 0.5, 1e-9);
+}
+
+TEST(Pool, RefusesWhatDoesNotBelongTogether) {
+  const RunResults a = run_of({point("gears", times(10))});
+  RunResults other_machine = run_of({point("gears", times(10))}, "B"), other_config = a, fewer = run_of({});
+  other_config.run["config"] = {{"seed", 2}};
+  for (const auto& [b, says] :
+       {std::pair{other_machine, "machines"}, {other_config, "configs"}, {fewer, "no point"}})
+    EXPECT_NE(message_of<InputError>([&] { pool({a, b}); }).find(says), std::string::npos);
+}
+
+TEST(Pool, IsReadFromAFolderOfRuns) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a", "b"}) {
+    std::filesystem::create_directory(folder / name);
+    write(folder / name / "run.json", run_of({}).run.dump());
+    write(folder / name / "points.jsonl", point("gears", times(10)).dump() + "\n");
+  }
+  EXPECT_EQ(read_results(folder.path()).points.at(0)["timing"]["frame_ms"]["samples"].size(), 2U);
 }
 
 TEST(Machine, IsToldByWhatChangesTimes) {
