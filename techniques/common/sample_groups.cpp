@@ -4,13 +4,19 @@
 #include "techniques/common/shaders/constants.h"
 
 namespace penumbra {
+namespace {
+
+constexpr uint32_t levels_of_cuts = 3, per_lane = 1u << levels_of_cuts;
+
+}  // namespace
 
 void SampleGroups::setup(gpu::Device& device, uint32_t lanes) {
   tile_height_ = 1;
-  while (tile_height_ * tile_height_ * 2 <= 8 * lanes) tile_height_ *= 2;
-  if (tile_height_ * tile_height_ > 8 * lanes) tile_height_ /= 2;
-  tile_width_ = 8 * lanes / tile_height_;
-  const gpu::Specialization constants[] = {{0, lanes}, {1, tile_width_}, {2, tile_height_}};
+  while (tile_height_ * tile_height_ * 2 <= per_lane * lanes) tile_height_ *= 2;
+  if (tile_height_ * tile_height_ > per_lane * lanes) tile_height_ /= 2;
+  tile_width_ = per_lane * lanes / tile_height_;
+  const gpu::Specialization constants[] = {
+      {0, lanes}, {1, tile_width_}, {2, tile_height_}, {3, levels_of_cuts}};
   pipeline_ = gpu::ComputePipeline(device, sample_groups_spv, sizeof(SampleGroupsConstants), constants,
                                    std::vector<gpu::ImageUse>(3, gpu::ImageUse::sampled_nearest));
 }
@@ -19,7 +25,9 @@ void SampleGroups::bind(VkImageView light, VkImageView origin, VkImageView norma
   pipeline_.bind_images(std::vector<VkImageView>{light, origin, normal});
 }
 
-uint32_t SampleGroups::capacity(uint32_t width, uint32_t height) const { return tiles(width, height) * 8; }
+uint32_t SampleGroups::capacity(uint32_t width, uint32_t height) const {
+  return tiles(width, height) * per_lane;
+}
 
 void SampleGroups::record(gpu::Commands& commands, const Input& in) const {
   SampleGroupsConstants pc{};

@@ -29,9 +29,13 @@ vec3 to_working(LightBasis b, vec3 world) {
 // False when no point of the light can be above the horizon of the view sample P' = o with normal n, or o is behind the
 // light. `slack`: more than |P' - P|.
 bool reachable(LightBasis b, vec4 o, vec3 n, float slack) {
-  bool above = false;
-  for (uint c = 0u; c < b.corner_count; c++)
-    above = above || dot(n, b.corners[c].xyz - o.xyz * b.corners[c].w) > -slack;
+  float highest_ = -1e30;
+  // Unrolled: a corner at a place that varies would be loaded lane by lane.
+  [[unroll]] for (uint c = 0u; c < 8u; c++) {
+    float height = c < b.corner_count ? dot(n, b.corners[c].xyz - o.xyz * b.corners[c].w) : -1e30;
+    highest_ = height > highest_ ? height : highest_;
+  }
+  bool above = highest_ > -slack;
   bool front = b.front_only == 0u || dot(b.row_z.xyz, o.xyz - b.origin.xyz) > -slack * length(b.row_z.xyz);
   return o.w != 0.0 && above && front;
 }

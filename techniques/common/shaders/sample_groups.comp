@@ -14,9 +14,11 @@
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint SG = 8;
-layout(constant_id = 1) const uint TILE_WIDTH = 8;     // TILE_WIDTH * tile height = 8 SG
+layout(constant_id = 1) const uint TILE_WIDTH = 8;     // TILE_WIDTH * tile height = PER_LANE SG
 layout(constant_id = 2) const uint TILE_HEIGHT = 8;
+layout(constant_id = 3) const uint LEVELS = 3;
 #include "techniques/common/shaders/subgroup.glsl"
+const uint PER_LANE = 1u << LEVELS;   // pixels of a tile that a lane holds
 
 layout(set = 0, binding = 0) uniform sampler2D light_texels;    // a LightBasis
 layout(set = 0, binding = 1) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample)
@@ -33,12 +35,12 @@ void main() {
   LightBasis light = light_basis(light_texels);
   uvec2 corner = uvec2(tile % pc.tiles_x, tile / pc.tiles_x) * uvec2(TILE_WIDTH, TILE_HEIGHT);
 
-  vec3 at[8];
-  uint pixel[8];
-  int key[8];
-  uint rank[8];
+  vec3 at[PER_LANE];
+  uint pixel[PER_LANE];
+  int key[PER_LANE];
+  uint rank[PER_LANE];
   uint count = 0u;
-  [[unroll]] for (uint k = 0u; k < 8u; k++) {
+  [[unroll]] for (uint k = 0u; k < PER_LANE; k++) {
     uint q = k * SG + lane;
     uvec2 xy = corner + uvec2(q % TILE_WIDTH, q / TILE_WIDTH);
     bool inside = xy.x < pc.width && xy.y < pc.height;
@@ -55,15 +57,19 @@ void main() {
   count = sum_of_all(count);
   if (count == 0u) return;
 
-  [[unroll]] for (uint level = 0u; level < 3u; level++) {
+  [[unroll]] for (uint level = 0u; level < LEVELS; level++) {
     const uint parts = 1u << level;
-    const uint part_size = (8u * SG) >> level;
-    int next[8];
-    [[unroll]] for (uint k = 0u; k < 8u; k++) next[k] = inactive;
+    const uint part_size = (PER_LANE * SG) >> level;
+    int next[PER_LANE];
+    uint part[PER_LANE];
+    [[unroll]] for (uint k = 0u; k < PER_LANE; k++) {
+      next[k] = inactive;
+      part[k] = key[k] != inactive ? rank[k] / part_size : parts;
+    }
     [[unroll]] for (uint s = 0u; s < parts; s++) {
       vec3 lo = vec3(1e30), hi = vec3(-1e30);
-      [[unroll]] for (uint k = 0u; k < 8u; k++) {
-        bool mine = key[k] != inactive && rank[k] / part_size == s;
+      [[unroll]] for (uint k = 0u; k < PER_LANE; k++) {
+        bool mine = part[k] == s;
         lo = mix(lo, lower(lo, at[k]), bvec3(mine));
         hi = mix(hi, upper(hi, at[k]), bvec3(mine));
       }
@@ -73,22 +79,22 @@ void main() {
       bool x = extent.x >= extent.y && extent.x >= extent.z, y = !x && extent.y >= extent.z;
       float from = x ? lo.x : y ? lo.y : lo.z, size = x ? extent.x : y ? extent.y : extent.z;
       float scale = 262143.0 / upper(size, 1e-30);
-      [[unroll]] for (uint k = 0u; k < 8u; k++) {
-        bool mine = key[k] != inactive && rank[k] / part_size == s;
+      [[unroll]] for (uint k = 0u; k < PER_LANE; k++) {
+        bool mine = part[k] == s;
         float v = x ? at[k].x : y ? at[k].y : at[k].z;
         // Part, place along its axis (18 bits), index: unique, so that ranks are a permutation.
         int bits = int(s << 26u) | int(clamp((v - from) * scale, 0.0, 262143.0)) << 8 | int(k * SG + lane);
         next[k] = mine ? bits : next[k];
       }
     }
-    [[unroll]] for (uint k = 0u; k < 8u; k++) {
+    [[unroll]] for (uint k = 0u; k < PER_LANE; k++) {
       key[k] = next[k];
       rank[k] = 0u;
     }
     for (uint l = 0u; l < SG; l++) {
-      [[unroll]] for (uint m = 0u; m < 8u; m++) {
+      [[unroll]] for (uint m = 0u; m < PER_LANE; m++) {
         int other = subgroupShuffle(key[m], l);
-        [[unroll]] for (uint k = 0u; k < 8u; k++) rank[k] += other < key[k] ? 1u : 0u;
+        [[unroll]] for (uint k = 0u; k < PER_LANE; k++) rank[k] += other < key[k] ? 1u : 0u;
       }
     }
   }
@@ -96,7 +102,7 @@ void main() {
   uint groups = (count + SG - 1u) / SG, base = 0u;
   if (lane == 0u) base = atomicAdd(pc.group_count.at[0], groups);
   base = subgroupShuffle(base, 0u) * SG;
-  [[unroll]] for (uint k = 0u; k < 8u; k++)
+  [[unroll]] for (uint k = 0u; k < PER_LANE; k++)
     if (key[k] != inactive) pc.slots.at[base + rank[k]] = pixel[k];
   if (count + lane < groups * SG) pc.slots.at[base + count + lane] = no_sample;
 }
