@@ -13,7 +13,10 @@ const float far_away = 1e30;
 vec3 p;                     // view sample
 vec3 group_lo, group_hi;    // box of the group's view samples
 uint mask[WORDS];
-uint open_[WORDS];          // light samples that some view sample of the group still sees
+// Columns in which some view sample of the group still sees a light sample, per band of rows. Bands, since the question
+// is asked for every box and triangle: all words of a mask would cost more than their finer rows save.
+const int WORDS_PER_OPEN_BAND = (WORDS + 7) / 8, OPEN_BANDS = (WORDS + WORDS_PER_OPEN_BAND - 1) / WORDS_PER_OPEN_BAND;
+uint open_[OPEN_BANDS];
 vec4 open_rect;             // their columns (x, y) and rows (z, w)
 float pad;
 
@@ -55,15 +58,15 @@ void block_horizon(vec3 P, vec3 n, FrameConstants f) {
 
 void begin_mask() {
   open_rect = vec4(0.0, float(COLUMNS - 1), 0.0, float(ROWS - 1));
-  [[unroll]] for (int q = 0; q < WORDS; q++) open_[q] = 0xffffffffu;
+  [[unroll]] for (int b = 0; b < OPEN_BANDS; b++) open_[b] = 0xffffffffu;
 }
 
 void update_open() {
   uint columns = 0u, columns_high = 0u;
   float r0 = 1e3, r1 = -1.0;
+  [[unroll]] for (int b = 0; b < OPEN_BANDS; b++) open_[b] = 0u;
   [[unroll]] for (int q = 0; q < WORDS; q++) {
     uint u = or_of_all(~mask[q]);
-    open_[q] = u;
     if (PITCH > 32) {
       columns |= (q & 1) == 0 ? u : 0u;
       columns_high |= (q & 1) == 1 ? u : 0u;
@@ -72,6 +75,7 @@ void update_open() {
     } else {
       [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
         uint row = PITCH == 32 ? u : (u >> (r * PITCH)) & below(PITCH);
+        open_[q / WORDS_PER_OPEN_BAND] |= row;
         columns |= row;
         float at = float(q * ROWS_PER_WORD + r);
         r0 = lower(r0, row != 0u ? at : 1e3);
@@ -84,20 +88,17 @@ void update_open() {
   open_rect = vec4(float(c0), float(c1), r0, r1);
 }
 
-// True where a light sample of the rectangle may still be seen from the group.
+// False where no view sample of the group sees a light sample of the rectangle any more.
 bool is_open(int i0, int i1, int j0, int j1) {
+  if (PITCH > 32) return true;
+  const int rows = WORDS_PER_OPEN_BAND * ROWS_PER_WORD;
+  int b0 = j0 / rows, b1 = j1 / rows;
   uint found = 0u;
-  if (PITCH <= 32) {
-    uint row = below(i1 + 1) & ~below(i0), columns = row;
-    [[unroll]] for (int r = 1; r < ROWS_PER_WORD; r++) columns |= row << (r * PITCH);
-    [[unroll]] for (int q = 0; q < WORDS; q++) {
-      int from = clamp((j0 - q * ROWS_PER_WORD) * PITCH, 0, 32), to = clamp((j1 + 1 - q * ROWS_PER_WORD) * PITCH, 0, 32);
-      uint rows = (to >= 32 ? 0xffffffffu : (1u << to) - 1u) & ~(from >= 32 ? 0xffffffffu : (1u << from) - 1u);
-      found |= open_[q] & rows & columns;
-    }
-    return found != 0u;
+  [[unroll]] for (int b = 0; b < OPEN_BANDS; b++) {
+    bool inside = b >= b0, before_end = b <= b1;
+    found |= inside && before_end ? open_[b] : 0u;
   }
-  return true;
+  return (found & below(i1 + 1) & ~below(i0)) != 0u;
 }
 
 // Rectangle of light samples that a box can hide from any view sample of the group, packed; false: none.
@@ -122,7 +123,8 @@ bool touches(vec3 lo, vec3 hi, out uint rect) {
   int a = int(clamp(i0, 0.0, float(COLUMNS - 1))), b = int(clamp(i1, 0.0, float(COLUMNS - 1)));
   int c = int(clamp(j0, 0.0, float(ROWS - 1))), d = int(clamp(j1, 0.0, float(ROWS - 1)));
   rect = uint(a) | uint(b) << 8 | uint(c) << 16 | uint(d) << 24;
-  return above && i0 <= i1 && j0 <= j1 && is_open(a, b, c, d);
+  bool open_left = is_open(a, b, c, d), columns_left = i0 <= i1, rows_left = j0 <= j1;   // no branches
+  return above && columns_left && rows_left && open_left;
 }
 
 // False when the triangle's plane has the light and all view samples of the group on one side, so that it can hide

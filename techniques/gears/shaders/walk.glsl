@@ -104,7 +104,9 @@ void rasterise_slots(uint slot, bool wanted, bool listed) {
   vec4 a = texel(triangles, slot * 3u);
   vec3 b = texel(triangles, slot * 3u + 1u).xyz, c = texel(triangles, slot * 3u + 2u).xyz;
   uint rect;
-  bool hit = touches(lower(lower(a.xyz, b), c), upper(upper(a.xyz, b), c), rect) && wanted && (listed ? separates(a.xyz, b, c) : a.w == 0.0);
+  bool touched = touches(lower(lower(a.xyz, b), c), upper(upper(a.xyz, b), c), rect);
+  bool apart = listed ? separates(a.xyz, b, c) : a.w == 0.0;
+  bool hit = touched && wanted && apart;
   uint left = subgroupBallot(hit).x;
   if (left == 0u) return;
   do {
