@@ -93,7 +93,8 @@ void add_describe(CLI::App& app, Context& context) {
   sub->add_option("technique", options->technique, "Its name");
   sub->add_flag("--json", options->as_json, "As a JSON object");
   sub->add_option("--schema", options->schema,
-                  "Print the JSON Schema of sweep configs (sweep), scene files (scene) or thresholds of `compare` (thresholds)");
+                  "Print the JSON Schema of sweep configs (sweep), scene files (scene) or thresholds of "
+                  "`compare` (thresholds)");
   sub->callback([options, &context] {
     if (!options->schema.empty()) return print_schema(options->schema, context.registry);
     if (options->technique.empty())

@@ -16,8 +16,8 @@ namespace penumbra {
 struct MeasureSettings {
   int warmup = 1, repetitions = 7;
   double min_time_s = 0.2, max_time_s = 60;
-  // Go on until the median's 95 % interval reaches no further than this share of the median to either side, or
-  // max_time_s is over; 0: no such target.
+  // Go on until the median's 95 % interval reaches no further than this share of the median to either side,
+  // or max_time_s is over; 0: no such target.
   double target_interval = 0;
 };
 

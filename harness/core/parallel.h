@@ -11,6 +11,7 @@ int thread_count();
 void set_threads(int n);
 
 // Calls body(begin, end) on disjoint ranges covering [0, count), ranges of at most `grain` elements.
-void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+void parallel_for(std::size_t count, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body);
 
 }  // namespace penumbra

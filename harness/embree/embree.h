@@ -1,4 +1,5 @@
-// Embree 3 and 4 under one spelling: the include, and the calls whose signatures differ. No geometry, no predicates.
+// Embree 3 and 4 under one spelling: the include, and the calls whose signatures differ. No geometry, no
+// predicates.
 #pragma once
 #if PENUMBRA_EMBREE_VERSION >= 4
 #include <embree4/rtcore.h>
@@ -17,8 +18,8 @@ inline constexpr RTCSceneFlags query_filter_flag = RTC_SCENE_FLAG_CONTEXT_FILTER
 
 enum class Coherence { coherent, incoherent };
 
-// What a query needs besides the rays: flags, and optionally a filter called on each candidate hit with `user` behind
-// the context (see RTCFilterFunctionNArguments::context and user_data()).
+// What a query needs besides the rays: flags, and optionally a filter called on each candidate hit with
+// `user` behind the context (see RTCFilterFunctionNArguments::context and user_data()).
 class Query {
  public:
   explicit Query(Coherence coherence, RTCFilterFunctionN filter = nullptr, void* user = nullptr) : state_{} {
@@ -63,11 +64,17 @@ class Query {
 
  private:
 #if PENUMBRA_EMBREE_VERSION >= 4
-  struct State { RTCRayQueryContext context; void* user; } state_;
+  struct State {
+    RTCRayQueryContext context;
+    void* user;
+  } state_;
   RTCOccludedArguments occluded_;
   RTCIntersectArguments intersect_;
 #else
-  struct State { RTCIntersectContext context; void* user; } state_;
+  struct State {
+    RTCIntersectContext context;
+    void* user;
+  } state_;
 #endif
 };
 

@@ -44,7 +44,8 @@ bool has_extension(VkPhysicalDevice device, const char* name);
 std::vector<DeviceInfo> describe(const std::vector<VkPhysicalDevice>& devices);
 
 // Times a load of some milliseconds with the device's timestamps and with the host's clock around submit and
-// fence. Timestamps are trusted when both agree within 20 % (or the host's extra is below 0.2 ms), and never on a software device.
+// fence. Timestamps are trusted when both agree within 20 % (or the host's extra is below 0.2 ms), and never
+// on a software device.
 Device::Clock probe_clock(Device& device);
 
 }  // namespace penumbra::gpu

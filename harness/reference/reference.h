@@ -1,5 +1,5 @@
-// The truth, from Embree in robust mode. Shares no code with techniques/: its horizon rule, ray set-up and loops are
-// its own.
+// The truth, from Embree in robust mode. Shares no code with techniques/: its horizon rule, ray set-up and
+// loops are its own.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -14,11 +14,11 @@ namespace penumbra {
 // Segments start at P' (offset), or at P with the triangle of the view sample left out (exact).
 enum class ReferenceOrigin { offset, exact };
 
-// Visibility at exactly the given light samples. Pixels without a view sample, or with no light sample above their
-// horizon, are not evaluated and hold 1.
+// Visibility at exactly the given light samples. Pixels without a view sample, or with no light sample above
+// their horizon, are not evaluated and hold 1.
 struct MatchedReference {
   std::vector<float> visibility;
-  std::vector<uint32_t> mask;        // mask_words per pixel, 1 = blocked (below the horizon counts as blocked)
+  std::vector<uint32_t> mask;  // mask_words per pixel, 1 = blocked (below the horizon counts as blocked)
   std::vector<uint8_t> evaluated;
 };
 
@@ -35,16 +35,16 @@ class ReferenceScene {
 
   struct Converged {
     std::vector<float> visibility;
-    std::vector<float> standard_error;   // per pixel, of the mean (from independent batches)
+    std::vector<float> standard_error;  // per pixel, of the mean (from independent batches)
     std::vector<uint8_t> evaluated;
-    double mean_standard_error = 0;      // root mean square over evaluated pixels
+    double mean_standard_error = 0;  // root mean square over evaluated pixels
     bool from_cache = false;
   };
-  // `n` low-discrepancy samples per view sample in independent scrambled batches. `cache_dir` empty: no cache; else an
-  // entry named by the hash of geometry, view samples, light, n, seed and origin is read if whole and valid (checksum),
-  // otherwise made and written (failure to write is a message, not an error).
-  Converged converged(const ViewSamplesHost& view, const Light& light, int n, uint32_t seed, ReferenceOrigin origin,
-                      const std::filesystem::path& cache_dir) const;
+  // `n` low-discrepancy samples per view sample in independent scrambled batches. `cache_dir` empty: no
+  // cache; else an entry named by the hash of geometry, view samples, light, n, seed and origin is read if
+  // whole and valid (checksum), otherwise made and written (failure to write is a message, not an error).
+  Converged converged(const ViewSamplesHost& view, const Light& light, int n, uint32_t seed,
+                      ReferenceOrigin origin, const std::filesystem::path& cache_dir) const;
 
  private:
   struct Impl;

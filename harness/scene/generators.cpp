@@ -49,7 +49,8 @@ const std::vector<GeneratorInfo>& generators() {
 namespace {
 
 // Given values over defaults, all checked.
-std::map<std::string, double> checked_values(const Generator& g, const std::vector<GeneratorArgument>& arguments) {
+std::map<std::string, double> checked_values(const Generator& g,
+                                             const std::vector<GeneratorArgument>& arguments) {
   std::map<std::string, double> values;
   std::vector<std::string> names;
   for (const GeneratorInfo::Param& p : g.info.params) values[p.name] = p.fallback, names.push_back(p.name);

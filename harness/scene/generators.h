@@ -1,5 +1,5 @@
-// Procedural meshes. Triangle counts are exact and documented in configs/scenes/README.md; a seed fixes all randomness
-// (own generator, the same on every platform and standard library).
+// Procedural meshes. Triangle counts are exact and documented in configs/scenes/README.md; a seed fixes all
+// randomness (own generator, the same on every platform and standard library).
 #pragma once
 #include <cstdint>
 #include <string>
@@ -15,7 +15,7 @@ struct GeneratorInfo {
     double fallback, lo, hi;
     bool integer;
   };
-  std::string name, help, triangles;   // triangles: the formula, in the parameters' names
+  std::string name, help, triangles;  // triangles: the formula, in the parameters' names
   std::vector<Param> params;
 };
 

@@ -7,9 +7,9 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "scene/declaration.h"
 #include "scene/generator_table.h"
 #include "scene/mesh_search.h"
-#include "scene/declaration.h"
 #include "scene/scene_file.h"
 #include "scene/scene_mesh.h"
 

@@ -1,5 +1,5 @@
-// A scene: meshes, instances, lights, cameras and how they move. A Frame is one moment of it, flattened to world space;
-// techniques only ever see Frames.
+// A scene: meshes, instances, lights, cameras and how they move. A Frame is one moment of it, flattened to
+// world space; techniques only ever see Frames.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -14,24 +14,26 @@
 
 namespace penumbra {
 
-// World-space triangles of one frame. Triangle t has corners indices[3t .. 3t+2]; vertices are not shared between
-// instances. Topology (indices) is the same in all frames of a scene.
+// World-space triangles of one frame. Triangle t has corners indices[3t .. 3t+2]; vertices are not shared
+// between instances. Topology (indices) is the same in all frames of a scene.
 struct Geometry {
   std::vector<Vec3f> positions;
-  std::vector<Vec3f> normals;            // shading normals, unit, per vertex
+  std::vector<Vec3f> normals;  // shading normals, unit, per vertex
   std::vector<uint32_t> indices;
   std::vector<uint32_t> triangle_instance;
   std::vector<Vec3f> instance_albedo;
   Box bounds;
-  bool closed = false;                   // every instance's mesh is closed and consistently wound (mirrored ones stay so)
+  bool closed = false;  // every instance's mesh is closed and consistently wound (mirrored ones stay so)
   std::vector<uint8_t> instance_closed;  // the same, one by one
   std::size_t triangle_count() const { return indices.size() / 3; }
-  Vec3f corner(std::size_t triangle, int i) const { return positions[indices[3 * triangle + static_cast<std::size_t>(i)]]; }
+  Vec3f corner(std::size_t triangle, int i) const {
+    return positions[indices[3 * triangle + static_cast<std::size_t>(i)]];
+  }
 };
 
 // What differs from the previous frame that a technique was told about.
 struct Changes {
-  bool topology = true;    // first frame: everything is new
+  bool topology = true;  // first frame: everything is new
   bool positions = true;
   bool light = true;
   bool camera = true;
@@ -46,8 +48,8 @@ struct Frame {
   Changes changes;
 };
 
-struct SceneReport {                     // for run.json and the report page
-  std::string name, description, fidelity;   // fidelity: "exact", "stand-in" or "procedural"
+struct SceneReport {                        // for run.json and the report page
+  std::string name, description, fidelity;  // fidelity: "exact", "stand-in" or "procedural"
   std::size_t triangles = 0;
   struct MeshEntry {
     std::string name, origin;
@@ -66,12 +68,13 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
 
   const std::string& name() const;
-  std::vector<std::string> light_names() const;    // the first is the default
-  std::vector<std::string> camera_names() const;   // the first is the default
-  const Light& light(const std::string& name) const;    // empty name = default; InputError with nearest name
+  std::vector<std::string> light_names() const;       // the first is the default
+  std::vector<std::string> camera_names() const;      // the first is the default
+  const Light& light(const std::string& name) const;  // empty name = default; InputError with nearest name
   const Camera& camera(const std::string& name) const;
   bool animated() const;
-  // Value the scene file gives for a sweep axis (resolution, mask_size, light_size, ...), as JSON text; "" if none.
+  // Value the scene file gives for a sweep axis (resolution, mask_size, light_size, ...), as JSON text; "" if
+  // none.
   std::string axis_default(const std::string& axis) const;
   SceneReport report() const;
   // Hash of everything that determines frames: the file, the meshes' contents, generator versions.

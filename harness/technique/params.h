@@ -1,5 +1,5 @@
-// Parameters described once: default, range, unit, the paper's symbol and meaning stand in one table per technique and
-// feed `describe`, validation, the schema and the technique's own struct.
+// Parameters described once: default, range, unit, the paper's symbol and meaning stand in one table per
+// technique and feed `describe`, validation, the schema and the technique's own struct.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -21,11 +21,11 @@ struct ParamInfo {
   std::string name;
   ParamType type = ParamType::integer;
   ParamValue fallback;
-  double lo = 0, hi = 0;                 // integer, number: inclusive range
-  std::vector<std::string> choices;      // choice
-  std::string unit, symbol, help;        // symbol: as the source writes it, may be empty
-  bool axis = false;                     // also a top-level sweep axis of this name (grid_size)
-  bool cost = false;                     // larger is dearer: weighs the progress bar
+  double lo = 0, hi = 0;             // integer, number: inclusive range
+  std::vector<std::string> choices;  // choice
+  std::string unit, symbol, help;    // symbol: as the source writes it, may be empty
+  bool axis = false;                 // also a top-level sweep axis of this name (grid_size)
+  bool cost = false;                 // larger is dearer: weighs the progress bar
 };
 
 std::string to_text(const ParamValue& value);
@@ -35,7 +35,8 @@ double decimal(float value);
 std::string expectation(const ParamInfo& info);
 // The value as `info` types it (an integer is a number too); throws InputError saying what was expected.
 ParamValue checked(const ParamInfo& info, const ParamValue& value);
-// Defaults filled in, values checked, unknown names rejected with the nearest valid one. `where` opens the message.
+// Defaults filled in, values checked, unknown names rejected with the nearest valid one. `where` opens the
+// message.
 ParamValues resolve(const std::vector<ParamInfo>& infos, const ParamValues& given, const std::string& where);
 
 // Ties ParamInfo entries to the fields of a technique's parameter struct P.
@@ -51,7 +52,15 @@ class ParamTable {
     return *this;
   }
   ParamTable& integer(const char* name, int P::*field, int lo, int hi, Text t) {
-    add({name, ParamType::integer, ParamValue(int64_t{P{}.*field}), double(lo), double(hi), {}, t.unit, t.symbol, t.help},
+    add({name,
+         ParamType::integer,
+         ParamValue(int64_t{P{}.*field}),
+         double(lo),
+         double(hi),
+         {},
+         t.unit,
+         t.symbol,
+         t.help},
         [field](P& p, const ParamValue& v) { p.*field = static_cast<int>(std::get<int64_t>(v)); });
     return *this;
   }
@@ -63,8 +72,15 @@ class ParamTable {
   // E: an enum class whose values are 0, 1, ... in the order of `choices`.
   template <class E>
   ParamTable& choice(const char* name, E P::*field, std::vector<std::string> choices, Text t) {
-    ParamInfo info{name, ParamType::choice, choices.at(static_cast<std::size_t>(P{}.*field)), 0, 0, choices, t.unit,
-                   t.symbol, t.help};
+    ParamInfo info{name,
+                   ParamType::choice,
+                   choices.at(static_cast<std::size_t>(P{}.*field)),
+                   0,
+                   0,
+                   choices,
+                   t.unit,
+                   t.symbol,
+                   t.help};
     add(std::move(info), [field, choices](P& p, const ParamValue& v) {
       for (std::size_t i = 0; i < choices.size(); ++i)
         if (choices[i] == std::get<std::string>(v)) p.*field = static_cast<E>(i);
@@ -80,7 +96,8 @@ class ParamTable {
   P read(const ParamValues& values) const {
     P p{};
     for (std::size_t i = 0; i < infos_.size(); ++i)
-      if (auto it = values.find(infos_[i].name); it != values.end()) setters_[i](p, checked(infos_[i], it->second));
+      if (auto it = values.find(infos_[i].name); it != values.end())
+        setters_[i](p, checked(infos_[i], it->second));
     return p;
   }
 

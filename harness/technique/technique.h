@@ -1,5 +1,5 @@
-// The one contract that every technique fulfils. A technique sees scenes, samples and the device - not the reference,
-// not the metrics, not the clock, not the files.
+// The one contract that every technique fulfils. A technique sees scenes, samples and the device - not the
+// reference, not the metrics, not the clock, not the files.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -27,30 +27,30 @@ enum class Residence { host, device };
 // One case to compute: what supports() judges and build() prepares.
 struct Case {
   gpu::Device* device = nullptr;
-  const Frame* frame = nullptr;                 // geometry, light, camera, what changed since the last build()
-  const GeometryOnDevice* geometry = nullptr;   // the frame's triangles on the device
+  const Frame* frame = nullptr;                // geometry, light, camera, what changed since the last build()
+  const GeometryOnDevice* geometry = nullptr;  // the frame's triangles on the device
   const LightSamples* light_samples = nullptr;
   int width = 0, height = 0;
 };
 
-// Visibility V per pixel, 1 = lit; pixels with no view sample, or none of whose light samples is above the horizon, may
-// hold anything: the harness evaluates the others only, and writes 1 there. The mask has light_samples->mask_words()
-// words per pixel, pixel-major, bit i of word i/32 = light sample i, 1 = blocked, bits past the count 0.
-// All arrays are zeroed by nobody: a technique writes every pixel.
+// Visibility V per pixel, 1 = lit; pixels with no view sample, or none of whose light samples is above the
+// horizon, may hold anything: the harness evaluates the others only, and writes 1 there. The mask has
+// light_samples->mask_words() words per pixel, pixel-major, bit i of word i/32 = light sample i, 1 = blocked,
+// bits past the count 0. All arrays are zeroed by nobody: a technique writes every pixel.
 struct HostOutput {
   std::span<float> visibility;
-  std::span<uint32_t> mask;                     // empty for techniques that are not sampled
+  std::span<uint32_t> mask;  // empty for techniques that are not sampled
 };
 struct DeviceOutput {
-  const gpu::Buffer* visibility = nullptr;      // float per pixel
-  const gpu::Buffer* mask = nullptr;            // null for techniques that are not sampled
+  const gpu::Buffer* visibility = nullptr;  // float per pixel
+  const gpu::Buffer* mask = nullptr;        // null for techniques that are not sampled
 };
 
 struct RenderInput {
   const Case* scene_case = nullptr;
   const ViewSamples* view_samples = nullptr;
-  HostOutput host;                              // set when Residence::host
-  DeviceOutput device;                          // set when Residence::device
+  HostOutput host;      // set when Residence::host
+  DeviceOutput device;  // set when Residence::device
 };
 
 // A number, or a list for distributions; names are documented in the room's README.
@@ -64,8 +64,8 @@ class Technique {
   virtual std::optional<std::string> supports(const Case& c) const = 0;
   // Pipelines and tables that depend on parameters and the device alone, made once: reported as `setup_ms`.
   virtual void setup(const Case&, gpu::PassRecorder&) {}
-  // Structures that depend on the scene. Called before the first render and whenever frame->changes says that geometry
-  // or light changed; its passes are `build_ms`, and a dynamic point counts them into its frame.
+  // Structures that depend on the scene. Called before the first render and whenever frame->changes says that
+  // geometry or light changed; its passes are `build_ms`, and a dynamic point counts them into its frame.
   virtual void build(const Case& c, gpu::PassRecorder& passes) = 0;
   // One frame. No allocation after the first call of the same case. Every piece of work is a pass.
   virtual void render(const RenderInput& in, gpu::PassRecorder& passes) = 0;
@@ -79,11 +79,11 @@ class Technique {
 
 struct TechniqueInfo {
   std::string name, title;
-  std::vector<std::string> sources;             // keys of techniques/references.bib, with the section: "GEARS, A.1"
+  std::vector<std::string> sources;  // keys of techniques/references.bib, with the section: "GEARS, A.1"
   std::vector<ParamInfo> params;
-  std::vector<LightKind> lights;                // kinds it can take
-  bool sampled = false;                         // uses the light samples and returns masks; else the light's centre or
-                                                // shape: mask_size, light_samples and light_pattern make no copies
+  std::vector<LightKind> lights;  // kinds it can take
+  bool sampled = false;           // uses the light samples and returns masks; else the light's centre or
+                                  // shape: mask_size, light_samples and light_pattern make no copies
   Residence residence = Residence::device;
   // Which origin it declares, given its parameters.
   std::function<Origin(const ParamValues&)> origin = [](const ParamValues&) { return Origin::offset; };

@@ -20,7 +20,9 @@ uint32_t PrefixScan::per_lane(uint32_t count) const {
   return values;
 }
 
-std::size_t PrefixScan::scratch_bytes(uint32_t count) const { return (2 + 2 * std::size_t{blocks(count)}) * 4; }
+std::size_t PrefixScan::scratch_bytes(uint32_t count) const {
+  return (2 + 2 * std::size_t{blocks(count)}) * 4;
+}
 
 void PrefixScan::record(gpu::Commands& commands, const gpu::Buffer& values, const gpu::Buffer& sums,
                         const gpu::Buffer& scratch, uint32_t count) const {

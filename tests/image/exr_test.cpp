@@ -26,7 +26,8 @@ std::vector<float> random_floats(std::size_t n, uint32_t seed) {
   std::mt19937 random(seed);
   std::vector<float> v(n);
   for (float& f : v)
-    f = std::bit_cast<float>(static_cast<uint32_t>(random()) & 0xbfffffffU);  // any finite bits of magnitude below 2
+    f = std::bit_cast<float>(static_cast<uint32_t>(random()) &
+                             0xbfffffffU);  // any finite bits of magnitude below 2
   return v;
 }
 

@@ -139,7 +139,8 @@ TEST_F(Cache, FailingToWriteIsAMessageAndNoError) {
 }
 
 TEST_F(Cache, AFailedWriteLeavesNothingBehind) {
-  const auto made = ReferenceScene(geometry_).converged(view_.host(), light_, 8, 1, ReferenceOrigin::offset, {});
+  const auto made =
+      ReferenceScene(geometry_).converged(view_.host(), light_, 8, 1, ReferenceOrigin::offset, {});
   const fs::path entry = folder_ / "entry.bin";
   fs::create_directories(entry / "occupied");  // the rename cannot replace a folder
   EXPECT_NE(write_cached(entry, 16, 9, made), "");

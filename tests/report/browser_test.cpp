@@ -32,8 +32,8 @@ std::string browser() {
 std::string dump_document(const fs::path& page, const fs::path& profile) {
   const std::string program = browser();
   if (program.empty()) {
-    ADD_FAILURE()
-        << "no Chromium: install the package `chromium` (see scripts/packages.list), or name one in $CHROMIUM";
+    ADD_FAILURE() << "no Chromium: install the package `chromium` (see scripts/packages.list), or name one "
+                     "in $CHROMIUM";
     return {};
   }
   const std::string command =

@@ -1,5 +1,5 @@
-// Spelling of types in structs that GLSL and C++ both include (scalar layout: C++'s own, as long as no bool or double
-// follows an odd number of words; assert sizes and offsets).
+// Spelling of types in structs that GLSL and C++ both include (scalar layout: C++'s own, as long as no bool
+// or double follows an odd number of words; assert sizes and offsets).
 #ifndef PENUMBRA_GPU_SHARED_H
 #define PENUMBRA_GPU_SHARED_H
 

@@ -18,11 +18,11 @@ struct ViewSamplesParams {
   PENUMBRA_ADDRESS(Vec4Array) geometric_normal;
   PENUMBRA_ADDRESS(Vec4Array) shading_normal;
   vec3 eye;
-  vec3 corner;      // direction through the picture's upper left corner, forward component 1
-  vec3 step_x;      // what one pixel to the right adds to the direction
-  vec3 step_y;      // what one row down adds
+  vec3 corner;  // direction through the picture's upper left corner, forward component 1
+  vec3 step_x;  // what one pixel to the right adds to the direction
+  vec3 step_y;  // what one row down adds
   vec3 forward;
-  float offset;     // eps of P' = P + eps Ng, scene units
+  float offset;  // eps of P' = P + eps Ng, scene units
   uint width;
   uint pixels;
 };

@@ -1,4 +1,5 @@
-// Structs that GLSL and C++ share, in scalar layout. Vectors of 4 come first, so that both languages lay them out alike.
+// Structs that GLSL and C++ share, in scalar layout. Vectors of 4 come first, so that both languages lay them
+// out alike.
 #ifndef PENUMBRA_ALIAS_FREE_SHARED_H
 #define PENUMBRA_ALIAS_FREE_SHARED_H
 #ifdef __cplusplus
@@ -20,38 +21,40 @@ SHARED_CONSTANT most_faces = 6u;
 SHARED_CONSTANT group_lanes = 64u;
 SHARED_CONSTANT samples_per_lane = 16u;   // of the bounds' reduction
 SHARED_CONSTANT triangles_per_lane = 8u;  // of the cull
-SHARED_CONSTANT small_rows = 16u;         // triangles over at most so many rows of texels are done by one invocation,
-SHARED_CONSTANT small_range = 128u;       // as far as their rows hold at most so many view samples each
-SHARED_CONSTANT item_rows = 16u;          // all else becomes items of so many rows, done by as many invocations
-SHARED_CONSTANT most_inner = 64u;         // view samples on a closed mesh's inside that are tested one by one
+SHARED_CONSTANT small_rows =
+    16u;  // triangles over at most so many rows of texels are done by one invocation,
+SHARED_CONSTANT small_range = 128u;  // as far as their rows hold at most so many view samples each
+SHARED_CONSTANT item_rows = 16u;     // all else becomes items of so many rows, done by as many invocations
+SHARED_CONSTANT most_inner = 64u;    // view samples on a closed mesh's inside that are tested one by one
 SHARED_CONSTANT no_slot = 0xffffffffu;
 SHARED_CONSTANT no_own = 0xfffffffeu;      // a view sample with no triangle to leave out
 SHARED_CONSTANT not_listed = 0xffffffffu;  // ... that faces away from the light
 
-// A window of the light's view, divided into grid_size x grid_size texels. With q relative to LightView::center:
-// u = dot(right, q) / depth, v = dot(down, q) / depth, depth = dot(forward, q), or 1 for a light at infinity.
+// A window of the light's view, divided into grid_size x grid_size texels. With q relative to
+// LightView::center: u = dot(right, q) / depth, v = dot(down, q) / depth, depth = dot(forward, q), or 1 for a
+// light at infinity.
 struct Face {
-  vec4 right, down, forward;   // w unused
-  vec4 window;                 // lower corner (u, v); texels per unit of u and v
-  vec4 slack;                  // x, y: texels that rounding may move u and v by; z: bound of |q| / depth
+  vec4 right, down, forward;  // w unused
+  vec4 window;                // lower corner (u, v); texels per unit of u and v
+  vec4 slack;                 // x, y: texels that rounding may move u and v by; z: bound of |q| / depth
 };
 
 struct LightView {
-  vec4 light;      // position, 1; or the unit direction towards a light at infinity, 0
-  vec4 emission;   // axis, cosine of the half angle about it in which light leaves (-1: everywhere)
-  vec4 center;     // q = P - center: the light's position, or the middle of the scene for a light at infinity
-  vec4 sample_lo, sample_hi;   // box of the view samples' q
+  vec4 light;     // position, 1; or the unit direction towards a light at infinity, 0
+  vec4 emission;  // axis, cosine of the half angle about it in which light leaves (-1: everywhere)
+  vec4 center;    // q = P - center: the light's position, or the middle of the scene for a light at infinity
+  vec4 sample_lo, sample_hi;  // box of the view samples' q
   Face faces[6];
-  uint face_count;             // 1, or 6: the faces of a cube about the light
+  uint face_count;  // 1, or 6: the faces of a cube about the light
   uint grid_size;
-  uint both_faces;             // 1: triangles of closed meshes cast with both sides
+  uint both_faces;  // 1: triangles of closed meshes cast with both sides
   uint unused;
 };
 
 // Minima of order-preserving integers (`hi` complemented), reset by one fill with ones.
 struct SampleBounds {
   uint lo[3], hi[3];
-  uint outside;   // 0 when a view sample is beyond the limit
+  uint outside;  // 0 when a view sample is beyond the limit
   uint unused;
 };
 
@@ -73,9 +76,9 @@ struct BoundsPush {
   ADDRESS_OF(UintArray) triangle;
   ADDRESS_OF(UVec4Array) samples;
   ADDRESS_OF(BoundsArray) bounds;
-  uint count;     // pixels
-  uint face;      // whose (u, v) are bounded
-  float limit;    // of |u| and |v|
+  uint count;   // pixels
+  uint face;    // whose (u, v) are bounded
+  float limit;  // of |u| and |v|
   uint unused;
 };
 
@@ -95,17 +98,17 @@ struct CastPush {
   ADDRESS_OF(FrameRef) frame;
   ADDRESS_OF(Vec3Array) positions;
   ADDRESS_OF(UintArray) indices;
-  ADDRESS_OF(UintArray) closed;    // a bit per triangle
+  ADDRESS_OF(UintArray) closed;  // a bit per triangle
   ADDRESS_OF(UintArray) offsets;
   ADDRESS_OF(UVec4Array) lists;
-  ADDRESS_OF(UintArray) blocked;   // a bit per view sample, in the order of the lists
-  ADDRESS_OF(UintArray) casters;   // 2 triangle + (of a closed mesh ? 1 : 0)
-  ADDRESS_OF(ItemArray) items;     // caster; first row, rows
+  ADDRESS_OF(UintArray) blocked;  // a bit per view sample, in the order of the lists
+  ADDRESS_OF(UintArray) casters;  // 2 triangle + (of a closed mesh ? 1 : 0)
+  ADDRESS_OF(ItemArray) items;    // caster; first row, rows
   ADDRESS_OF(ProgressRef) progress;
   uint face;
-  uint first;      // caster, or view sample of each range of an item
-  uint count;      // triangles, casters or items
-  uint groups;     // dispatched, for their interleaving
+  uint first;   // caster, or view sample of each range of an item
+  uint count;   // triangles, casters or items
+  uint groups;  // dispatched, for their interleaving
 };
 
 struct ResolvePush {
@@ -117,7 +120,8 @@ struct ResolvePush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(Face) == 80 && sizeof(LightView) == 80 + 6 * 80 + 16 && offsetof(LightView, face_count) == 560);
+static_assert(sizeof(Face) == 80 && sizeof(LightView) == 80 + 6 * 80 + 16 &&
+              offsetof(LightView, face_count) == 560);
 static_assert(sizeof(SampleBounds) == 32 && sizeof(Progress) == 16 + 68 * 4 && sizeof(BoundsPush) == 72);
 static_assert(sizeof(BinPush) == 64 && sizeof(CastPush) == 96 && sizeof(ResolvePush) == 32);
 }  // namespace penumbra::alias_free

@@ -1,4 +1,5 @@
-// Push constants of the shared kernels, for GLSL and C++: addresses are 64-bit numbers in C++, references in GLSL.
+// Push constants of the shared kernels, for GLSL and C++: addresses are 64-bit numbers in C++, references in
+// GLSL.
 #ifndef PENUMBRA_COMMON_CONSTANTS_H
 #define PENUMBRA_COMMON_CONSTANTS_H
 #ifdef __cplusplus
@@ -12,16 +13,16 @@ namespace penumbra {
 #endif
 
 struct SampleGroupsConstants {
-  PENUMBRA_ADDRESS(Uints) slots;  // out: pixel of each slot, SG slots per group
+  PENUMBRA_ADDRESS(Uints) slots;        // out: pixel of each slot, SG slots per group
   PENUMBRA_ADDRESS(Uints) group_count;  // out: one counter, 0 before
   PENUMBRA_UINT width, height, tiles_x, tiles;
-  float slack;  // world: more than |P' - P|
+  float slack;         // world: more than |P' - P|
   float depth_weight;  // of the distance to the light against the directions across
 };
 
 struct PrefixScanConstants {
   PENUMBRA_ADDRESS(Uints) values, sums;  // in; out, one per value
-  PENUMBRA_ADDRESS(Uints) blocks;  // total (2 words), then 2 words per block
+  PENUMBRA_ADDRESS(Uints) blocks;        // total (2 words), then 2 words per block
   PENUMBRA_UINT count, block_count;
   PENUMBRA_UINT per_lane;  // consecutive values of a lane; a block is a subgroup's
 };

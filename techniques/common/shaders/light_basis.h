@@ -1,4 +1,5 @@
-// A light as grouping and binning see it: a space to work in, and the corners of its convex hull. Shared by GLSL and C++.
+// A light as grouping and binning see it: a space to work in, and the corners of its convex hull. Shared by
+// GLSL and C++.
 #ifndef PENUMBRA_LIGHT_BASIS_H
 #define PENUMBRA_LIGHT_BASIS_H
 #ifdef __cplusplus
@@ -17,9 +18,9 @@ namespace penumbra {
 struct LightBasis {
   // working = (dot(row_x, d), dot(row_y, d), dot(row_z, d)) with d = world - origin.
   PENUMBRA_VEC4 row_x, row_y, row_z, origin;
-  PENUMBRA_VEC4 corners[8];      // world; w = 0: a direction towards a light at infinity
+  PENUMBRA_VEC4 corners[8];  // world; w = 0: a direction towards a light at infinity
   PENUMBRA_UINT corner_count;
-  PENUMBRA_UINT front_only;      // 1: receivers with working z <= 0 are behind the light
+  PENUMBRA_UINT front_only;  // 1: receivers with working z <= 0 are behind the light
   PENUMBRA_UINT padding[2];
 };
 

@@ -14,43 +14,45 @@ namespace penumbra::gears {
 struct PrepareConstants {
   PENUMBRA_ADDRESS(FrameRef) frame;
   PENUMBRA_ADDRESS(Floats) positions;
-  PENUMBRA_ADDRESS(Uints) indices, order;  // order: triangle of each slot, or no_triangle
+  PENUMBRA_ADDRESS(Uints) indices, order;    // order: triangle of each slot, or no_triangle
   PENUMBRA_ADDRESS(Vec4s) triangles, boxes;  // out: 3 per slot; 2 per leaf
-  PENUMBRA_ADDRESS(Uints) list;  // out: slots outside the tree
+  PENUMBRA_ADDRESS(Uints) list;              // out: slots outside the tree
   PENUMBRA_ADDRESS(HeaderRef) header;
   PENUMBRA_UINT tree_slots, slots, first_leaf, leaf_groups;
 };
 
 struct RefitConstants {
   PENUMBRA_ADDRESS(Vec4s) boxes;  // 2 per node: lo, hi.x | hi.yz
-  PENUMBRA_UINT first, count;  // nodes of this level
-  PENUMBRA_UINT node_count;  // nodes past it are empty
+  PENUMBRA_UINT first, count;     // nodes of this level
+  PENUMBRA_UINT node_count;       // nodes past it are empty
 };
 
 struct WalkTreeConstants {
   PENUMBRA_ADDRESS(Vec4s) light_samples;  // world
-  PENUMBRA_ADDRESS(Floats) visibility;  // per pixel; written where SAMPLES_SEEN
-  PENUMBRA_ADDRESS(Uints) slots;  // pixel of each slot, SG per group
-  PENUMBRA_ADDRESS(Uints) masks;  // WORDS per pixel
-  PENUMBRA_ADDRESS(Uints) list;  // slots outside the tree
-  PENUMBRA_ADDRESS(Uints) resume;  // two lists of what to go on with, `capacity` each: group, lanes, next leaf
+  PENUMBRA_ADDRESS(Floats) visibility;    // per pixel; written where SAMPLES_SEEN
+  PENUMBRA_ADDRESS(Uints) slots;          // pixel of each slot, SG per group
+  PENUMBRA_ADDRESS(Uints) masks;          // WORDS per pixel
+  PENUMBRA_ADDRESS(Uints) list;           // slots outside the tree
+  PENUMBRA_ADDRESS(Uints)
+  resume;  // two lists of what to go on with, `capacity` each: group, lanes, next leaf
   PENUMBRA_ADDRESS(HeaderRef) header;
   PENUMBRA_UINT groups, work_groups, first_leaf;
   PENUMBRA_UINT list_begin, list_end;  // part of the list for this dispatch
-  PENUMBRA_UINT read_list;  // which of the two resume lists is read; the other is written
-  PENUMBRA_UINT capacity;  // at least `groups`
-  PENUMBRA_UINT split_turns;  // loop turns after which a group goes on as two
+  PENUMBRA_UINT read_list;             // which of the two resume lists is read; the other is written
+  PENUMBRA_UINT capacity;              // at least `groups`
+  PENUMBRA_UINT split_turns;           // loop turns after which a group goes on as two
 };
 
 struct WalkCellsConstants {
   PENUMBRA_ADDRESS(Vec4s) light_samples;  // world
-  PENUMBRA_ADDRESS(Floats) visibility;  // per pixel; written where SAMPLES_SEEN
+  PENUMBRA_ADDRESS(Floats) visibility;    // per pixel; written where SAMPLES_SEEN
   PENUMBRA_ADDRESS(Uints) slots, masks;
-  PENUMBRA_ADDRESS(Uints) list;  // triangles outside the cells
+  PENUMBRA_ADDRESS(Uints) list;         // triangles outside the cells
   PENUMBRA_ADDRESS(Uints) group_cells;  // cell of each group
-  PENUMBRA_ADDRESS(Uints) counts, offsets;  // per cell: its triangles, and where its list would begin in one list of all cells
+  PENUMBRA_ADDRESS(Uints)
+  counts, offsets;  // per cell: its triangles, and where its list would begin in one list of all cells
   PENUMBRA_ADDRESS(Uints) assigned;  // the lists of this chunk of cells
-  PENUMBRA_ADDRESS(Uints) resume;  // two lists of groups to go on with, then per group the triangles done
+  PENUMBRA_ADDRESS(Uints) resume;    // two lists of groups to go on with, then per group the triangles done
   PENUMBRA_ADDRESS(HeaderRef) header;
   PENUMBRA_UINT groups, first_group, work_groups;
   PENUMBRA_UINT chunk_begin;  // offset of the chunk's first list
@@ -70,9 +72,10 @@ struct FitGridConstants {
 struct BinSamplesConstants {
   PENUMBRA_ADDRESS(FrameRef) frame;
   PENUMBRA_ADDRESS(HeaderRef) header;
-  PENUMBRA_ADDRESS(Uints) counts;  // per cell, 0 before either stage
+  PENUMBRA_ADDRESS(Uints) counts;        // per cell, 0 before either stage
   PENUMBRA_ADDRESS(Uints) first_groups;  // per cell: its first group
-  PENUMBRA_ADDRESS(Uints) slots, group_cells;  // out: SG slots per group, no_sample before; cell of each group
+  PENUMBRA_ADDRESS(Uints)
+  slots, group_cells;  // out: SG slots per group, no_sample before; cell of each group
   PENUMBRA_UINT pixels, grid_size;
   float slack;
 };
@@ -81,10 +84,10 @@ struct BinTrianglesConstants {
   PENUMBRA_ADDRESS(FrameRef) frame;
   PENUMBRA_ADDRESS(HeaderRef) header;
   PENUMBRA_ADDRESS(Vec4s) triangles;  // 3 per slot, working space
-  PENUMBRA_ADDRESS(Uints) counts;  // per cell, 0 before either stage
-  PENUMBRA_ADDRESS(Uints) offsets;  // per cell: where its list would begin in one list of all cells
-  PENUMBRA_ADDRESS(Uints) assigned;  // out: lists of the chunk, chunk_begin being its first offset
-  PENUMBRA_ADDRESS(Uints) large;  // slots of large triangles
+  PENUMBRA_ADDRESS(Uints) counts;     // per cell, 0 before either stage
+  PENUMBRA_ADDRESS(Uints) offsets;    // per cell: where its list would begin in one list of all cells
+  PENUMBRA_ADDRESS(Uints) assigned;   // out: lists of the chunk, chunk_begin being its first offset
+  PENUMBRA_ADDRESS(Uints) large;      // slots of large triangles
   PENUMBRA_UINT slots, grid_size, large_count;
   PENUMBRA_UINT cell_begin, cell_end, chunk_begin;
 };

@@ -13,52 +13,57 @@ namespace penumbra::gears {
 #define PENUMBRA_ADDRESS(type) type
 #endif
 
-// Working space (see LightBasis): for a regular grid of light samples its unit is one light sample, sample (i, j) lies
-// at (i, j, 0) and receivers have z > 0. For any other light it is the world, moved.
+// Working space (see LightBasis): for a regular grid of light samples its unit is one light sample, sample
+// (i, j) lies at (i, j, 0) and receivers have z > 0. For any other light it is the world, moved.
 struct FrameConstants {
   LightBasis light;
   PENUMBRA_VEC4 light_lo, light_hi;     // box of all light samples, working space; w = 0: of directions
   PENUMBRA_VEC4 first, step_u, step_v;  // regular grid, world: sample (i, j) = first + i step_u + j step_v
-  PENUMBRA_VEC4 camera_x, camera_y, camera_z;   // grid camera C: rows for working - camera_eye; its corners of the light
-  PENUMBRA_VEC4 camera_eye;                     // w = 1: perspective, 0: parallel
-  PENUMBRA_ADDRESS(Vec4s) origin;       // per pixel: P' (w = 0: no view sample), P, Ng
+  PENUMBRA_VEC4 camera_x, camera_y,
+      camera_z;                    // grid camera C: rows for working - camera_eye; its corners of the light
+  PENUMBRA_VEC4 camera_eye;        // w = 1: perspective, 0: parallel
+  PENUMBRA_ADDRESS(Vec4s) origin;  // per pixel: P' (w = 0: no view sample), P, Ng
   PENUMBRA_ADDRESS(Vec4s) position;
   PENUMBRA_ADDRESS(Vec4s) normal;
-  PENUMBRA_ADDRESS(Vec4s) light_samples;   // world
-  PENUMBRA_VEC4 cone;                   // spot light: axis, cosine of the half angle; w = -2: none
-  PENUMBRA_VEC4 apex;                   // the light's centre, world
-  PENUMBRA_VEC4 front;                  // w = 1: shines only to the side that xyz points to
-  float pad;                            // working space: bound of a coordinate's rounding error
-  float near;                           // grid camera: what is nearer than this has no place on the grid
-  float grid_unit;                      // grid camera: typical size of a coordinate on its image plane
+  PENUMBRA_ADDRESS(Vec4s) light_samples;  // world
+  PENUMBRA_VEC4 cone;                     // spot light: axis, cosine of the half angle; w = -2: none
+  PENUMBRA_VEC4 apex;                     // the light's centre, world
+  PENUMBRA_VEC4 front;                    // w = 1: shines only to the side that xyz points to
+  float pad;                              // working space: bound of a coordinate's rounding error
+  float near;                             // grid camera: what is nearer than this has no place on the grid
+  float grid_unit;                        // grid camera: typical size of a coordinate on its image plane
   PENUMBRA_UINT paper_extrusion;
 };
 
 // Places in FrameConstants, for shaders that fetch them as texels.
-const PENUMBRA_UINT light_lo_texel = 13, light_hi_texel = 14, first_texel = 15, step_u_texel = 16, step_v_texel = 17,
-                    cone_texel = 24, apex_texel = 25, front_texel = 26, pad_texel = 27;
+const PENUMBRA_UINT light_lo_texel = 13, light_hi_texel = 14, first_texel = 15, step_u_texel = 16,
+                    step_v_texel = 17, cone_texel = 24, apex_texel = 25, front_texel = 26, pad_texel = 27;
 
 // Counts that the device makes and the host reads.
 struct Header {
-  PENUMBRA_UINT group_count;            // groups of view samples
-  PENUMBRA_UINT list_count;             // triangles outside the tree or the cells
-  PENUMBRA_UINT resume_count;           // groups, or parts of them, that have to go on in another dispatch
-  PENUMBRA_UINT large_count;            // triangles that touch many cells
-  PENUMBRA_UINT farthest;               // float bits: largest z of a view sample before the grid camera
-  PENUMBRA_UINT split_count;            // groups that went on as two
+  PENUMBRA_UINT group_count;   // groups of view samples
+  PENUMBRA_UINT list_count;    // triangles outside the tree or the cells
+  PENUMBRA_UINT resume_count;  // groups, or parts of them, that have to go on in another dispatch
+  PENUMBRA_UINT large_count;   // triangles that touch many cells
+  PENUMBRA_UINT farthest;      // float bits: largest z of a view sample before the grid camera
+  PENUMBRA_UINT split_count;   // groups that went on as two
   PENUMBRA_UINT padding[2];
-  // Statistics, low and high words: nodes and leaves visited, pairs (triangle, view sample) rasterised, pairs whose
-  // triangle covers at least one light sample.
+  // Statistics, low and high words: nodes and leaves visited, pairs (triangle, view sample) rasterised, pairs
+  // whose triangle covers at least one light sample.
   PENUMBRA_UINT nodes[2], leaves[2], pairs[2], necessary[2];
-  float grid_lo[2], grid_scale[2];      // cell = (image plane - lo) * scale
+  float grid_lo[2], grid_scale[2];  // cell = (image plane - lo) * scale
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameConstants) == 208 + 12 * 16 + 32 + 16 && offsetof(FrameConstants, pad) == 432);
-static_assert(offsetof(FrameConstants, light_lo) == 16 * light_lo_texel && offsetof(FrameConstants, light_hi) == 16 * light_hi_texel);
-static_assert(offsetof(FrameConstants, first) == 16 * first_texel && offsetof(FrameConstants, step_u) == 16 * step_u_texel &&
-              offsetof(FrameConstants, step_v) == 16 * step_v_texel && offsetof(FrameConstants, cone) == 16 * cone_texel &&
-              offsetof(FrameConstants, apex) == 16 * apex_texel && offsetof(FrameConstants, front) == 16 * front_texel &&
+static_assert(offsetof(FrameConstants, light_lo) == 16 * light_lo_texel &&
+              offsetof(FrameConstants, light_hi) == 16 * light_hi_texel);
+static_assert(offsetof(FrameConstants, first) == 16 * first_texel &&
+              offsetof(FrameConstants, step_u) == 16 * step_u_texel &&
+              offsetof(FrameConstants, step_v) == 16 * step_v_texel &&
+              offsetof(FrameConstants, cone) == 16 * cone_texel &&
+              offsetof(FrameConstants, apex) == 16 * apex_texel &&
+              offsetof(FrameConstants, front) == 16 * front_texel &&
               offsetof(FrameConstants, pad) == 16 * pad_texel);
 static_assert(sizeof(Header) == 80 && offsetof(Header, nodes) == 32 && offsetof(Header, grid_lo) == 64);
 }  // namespace penumbra::gears

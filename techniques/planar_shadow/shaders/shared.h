@@ -1,4 +1,5 @@
-// Structs that GLSL and C++ share. Vectors of 4 come first in each, so that both languages lay them out alike.
+// Structs that GLSL and C++ share. Vectors of 4 come first in each, so that both languages lay them out
+// alike.
 #ifndef PENUMBRA_PLANAR_SHADOW_SHARED_H
 #define PENUMBRA_PLANAR_SHADOW_SHARED_H
 #ifdef __cplusplus
@@ -28,16 +29,16 @@ struct GatherPush {
   ADDRESS_OF(UintArray) on_receiver;  // a bit per triangle
   ADDRESS_OF(Vec4Array) position;
   ADDRESS_OF(Vec4Array) normal;
-  ADDRESS_OF(UintArray) stencil;      // slices of 8 light samples each; a byte per pixel, a bit per light sample
-  ADDRESS_OF(Vec4Array) points;       // light samples
+  ADDRESS_OF(UintArray) stencil;  // slices of 8 light samples each; a byte per pixel, a bit per light sample
+  ADDRESS_OF(Vec4Array) points;   // light samples
   ADDRESS_OF(FloatArray) weights;
-  ADDRESS_OF(UintArray) dark;         // mask of the light samples that light no point of the receiver
+  ADDRESS_OF(UintArray) dark;  // mask of the light samples that light no point of the receiver
   ADDRESS_OF(FloatArray) visibility;
   ADDRESS_OF(UintArray) mask;
   float weight;  // of every light sample; 0: they differ
   uint pixels;
-  uint words;   // of a pixel's mask
-  uint first;   // light samples first ... end; first is a multiple of 32
+  uint words;  // of a pixel's mask
+  uint first;  // light samples first ... end; first is a multiple of 32
   uint end;
   uint unused;
 };

@@ -11,12 +11,12 @@ using uint = uint32_t;
 #endif
 
 struct AccumulatePush {
-  ADDRESS_OF(FloatArray) lit;          // what this light sample's map says
-  ADDRESS_OF(FloatArray) visibility;   // weighted sum over the light samples so far
+  ADDRESS_OF(FloatArray) lit;         // what this light sample's map says
+  ADDRESS_OF(FloatArray) visibility;  // weighted sum over the light samples so far
   ADDRESS_OF(UintArray) mask;
   uint pixels;
   uint light_sample;
-  uint mask_words;   // per pixel
+  uint mask_words;  // per pixel
   float weight;
 };
 

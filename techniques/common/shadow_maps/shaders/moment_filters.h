@@ -1,5 +1,5 @@
-// Upper bounds of visibility from filtered moments of depth. GLSL and C++ compile the same lines: the tests hold them
-// against double precision. Depths are in [0, 1]; a result is 1 where lit.
+// Upper bounds of visibility from filtered moments of depth. GLSL and C++ compile the same lines: the tests
+// hold them against double precision. Depths are in [0, 1]; a result is 1 where lit.
 #ifndef PENUMBRA_SHADOW_MAP_MOMENT_FILTERS_H
 #define PENUMBRA_SHADOW_MAP_MOMENT_FILTERS_H
 #ifdef __cplusplus
@@ -33,7 +33,8 @@ INLINE float warped_variance(float warped, float c, float least_variance) {
   return least_variance * 4.0f * c * c * warped * warped;
 }
 
-// Hamburger four moment shadow mapping [Peters2015]: the sharpest lower bound of shadow that four moments allow.
+// Hamburger four moment shadow mapping [Peters2015]: the sharpest lower bound of shadow that four moments
+// allow.
 INLINE float four_moments(float m1, float m2, float m3, float m4, float depth, float moment_bias) {
   float b0 = m1 + (0.5f - m1) * moment_bias, b1 = m2 + (0.5f - m2) * moment_bias;
   float b2 = m3 + (0.5f - m3) * moment_bias, b3 = m4 + (0.5f - m4) * moment_bias;

@@ -1,4 +1,5 @@
-// Structs that GLSL and C++ share. Vectors of 4 come first in each, so that both languages lay them out alike.
+// Structs that GLSL and C++ share. Vectors of 4 come first in each, so that both languages lay them out
+// alike.
 #ifndef PENUMBRA_SHADOW_MAP_SHARED_H
 #define PENUMBRA_SHADOW_MAP_SHARED_H
 #ifdef __cplusplus
@@ -19,29 +20,32 @@ using vec4 = Vec4f;
 struct MapLayer {
   mat4 clip_from_world;   // x, y in [-1, 1] over the map, depth in [0, 1] growing away from the light
   mat4 plane_from_world;  // its inverse transpose: takes planes where clip_from_world takes points
-  vec4 linear_numerator;  // linear depth = dot(numerator, v) / dot(denominator, v), v = (clip x, clip y, depth, 1)
+  vec4 linear_numerator;  // linear depth = dot(numerator, v) / dot(denominator, v), v = (clip x, clip y,
+                          // depth, 1)
   vec4 linear_denominator;
   vec4 linear_from_world;  // linear depth of a point = dot(xyz, P) + w: distance along the map's axis
-  vec4 range;              // x, y: view depths [x, y) of the receivers that use this layer; z, w: linear depths of 0 and 1
-  vec4 log_warp;           // x, y: a map coordinate y' = x log(-1 / y) + y in place of y; x = 0: y itself
-  vec4 light_texels;       // texels per unit of (1/depth) that the light's edges span: edge u in xy, edge v in zw
+  vec4
+      range;  // x, y: view depths [x, y) of the receivers that use this layer; z, w: linear depths of 0 and 1
+  vec4 log_warp;      // x, y: a map coordinate y' = x log(-1 / y) + y in place of y; x = 0: y itself
+  vec4 light_texels;  // texels per unit of (1/depth) that the light's edges span: edge u in xy, edge v in zw
 };
 
-// Smallest and largest value over the view samples, as order-preserving integers; `hi` is complemented so that both
-// are minima and one fill resets them.
+// Smallest and largest value over the view samples, as order-preserving integers; `hi` is complemented so
+// that both are minima and one fill resets them.
 struct SampleBounds {
-  uint lo[4];   // x, y, z in the space asked for; view depth
+  uint lo[4];  // x, y, z in the space asked for; view depth
   uint hi[4];
-  uint outside;   // 0 when a view sample that faces the light was beyond the query's limit or behind the light's plane
+  uint outside;  // 0 when a view sample that faces the light was beyond the query's limit or behind the
+                 // light's plane
   uint unused[3];
 };
 
 // What fit.comp is asked: the bounds of which view samples, in which space.
 struct FitQuery {
   mat4 space_from_world;
-  vec4 light;      // position, 1; or the direction towards a light at infinity, 0
-  vec4 emission;   // axis, and cosine of the half angle about it in which light leaves (-1: everywhere)
-  vec4 range;      // samples of view depth [x, y) and of |x/w|, |y/w| <= z alone
+  vec4 light;     // position, 1; or the direction towards a light at infinity, 0
+  vec4 emission;  // axis, and cosine of the half angle about it in which light leaves (-1: everywhere)
+  vec4 range;     // samples of view depth [x, y) and of |x/w|, |y/w| <= z alone
 };
 
 struct FitPush {
@@ -49,8 +53,8 @@ struct FitPush {
   ADDRESS_OF(BoundsArray) bounds;
   ADDRESS_OF(Vec4Array) position;
   ADDRESS_OF(Vec4Array) normal;
-  uint count;   // pixels
-  uint slot;    // of query and bounds
+  uint count;  // pixels
+  uint slot;   // of query and bounds
 };
 
 struct DepthPush {
@@ -69,30 +73,31 @@ struct LogDepthPush {
 };
 
 struct LookupPush {
-  vec4 light;      // as FitQuery
+  vec4 light;  // as FitQuery
   vec4 emission;
   ADDRESS_OF(Vec4Array) position;
   ADDRESS_OF(Vec4Array) origin;
   ADDRESS_OF(Vec4Array) normal;
   ADDRESS_OF(LayerArray) layers;
-  ADDRESS_OF(Vec2Array) disc;       // percentage-closer filters
-  ADDRESS_OF(UintArray) moments;    // filterable maps
+  ADDRESS_OF(Vec2Array) disc;     // percentage-closer filters
+  ADDRESS_OF(UintArray) moments;  // filterable maps
   ADDRESS_OF(FloatArray) visibility;
-  ADDRESS_OF(Vec4Array) camera;     // filterable maps with levels: the eye, and a pixel's step right and down at unit depth
-  uint count;             // pixels
+  ADDRESS_OF(Vec4Array)
+  camera;      // filterable maps with levels: the eye, and a pixel's step right and down at unit depth
+  uint count;  // pixels
   uint layer_count;
-  float constant_bias;    // scene units
+  float constant_bias;  // scene units
   float bleeding_reduction;
-  float variance_or_bias; // min_variance, or moment_bias
-  uint max_probes;        // 1: no anisotropic filtering
+  float variance_or_bias;  // min_variance, or moment_bias
+  uint max_probes;         // 1: no anisotropic filtering
 };
 
 struct MomentsPush {
   ADDRESS_OF(LayerArray) layers;
-  ADDRESS_OF(UintArray) from;   // blur and halve_moments alone
+  ADDRESS_OF(UintArray) from;  // blur and halve_moments alone
   ADDRESS_OF(UintArray) to;
   uint layer;
-  uint level;                   // made by halve_moments
+  uint level;  // made by halve_moments
 };
 
 #ifdef __cplusplus
