@@ -41,7 +41,7 @@ using Vec3d = Vec3<double>;
 using Vec4d = Vec4<double>;
 using Vec2i = Vec2<int>;
 
-// clang-format off: one operator, one line
+// clang-format off
 template <class T> constexpr Vec3<T> operator+(Vec3<T> a, Vec3<T> b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 template <class T> constexpr Vec3<T> operator-(Vec3<T> a, Vec3<T> b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 template <class T> constexpr Vec3<T> operator-(Vec3<T> a) { return {-a.x, -a.y, -a.z}; }
