@@ -1,8 +1,5 @@
 #include "techniques/stencil_shadow_volume/volumes.h"
 
-#include <atomic>
-
-#include "core/parallel.h"
 #include "shaders/shadow_volume_facing.h"
 #include "shaders/shadow_volume_silhouettes.h"
 
@@ -13,25 +10,7 @@ constexpr uint32_t group = 64;
 
 bool contains(const Box& box, Vec3f p) { return min(box.lo, p) == box.lo && max(box.hi, p) == box.hi; }
 
-void upload_words(gpu::Device& device, gpu::PassRecorder& passes, gpu::Buffer& buffer,
-                  const std::vector<uint32_t>& words, const char* what) {
-  const std::size_t bytes = std::max<std::size_t>(words.size(), 1) * sizeof(uint32_t);
-  gpu::ensure(buffer, device, bytes, gpu::Memory::device, what);
-  if (!words.empty())
-    gpu::upload(passes, "upload_adjacency", buffer, words.data(), words.size() * sizeof(uint32_t));
-}
-
 }  // namespace
-
-bool still_welded(const Adjacency& adjacency, const std::vector<Vec3f>& positions) {
-  if (adjacency.welded.size() != positions.size()) return false;
-  std::atomic<bool> together{true};
-  parallel_for(positions.size(), 16384, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      if (!(positions[v] == positions[adjacency.representative[adjacency.welded[v]]])) together = false;
-  });
-  return together;
-}
 
 void Volumes::setup(gpu::Device& device) {
   facing_pipeline_ = gpu::ComputePipeline(device, shadow_volume_facing_spv, sizeof(ExtractPush));
@@ -42,27 +21,11 @@ void Volumes::setup(gpu::Device& device) {
 }
 
 void Volumes::build(const Case& c, gpu::PassRecorder& passes) {
-  const Frame& frame = *c.frame;
   const uint32_t triangles = c.geometry->triangle_count;
   gpu::ensure(facing_, *c.device, std::max(triangles, 1U) * sizeof(int32_t), gpu::Memory::device,
               "shadow volumes: facings");
   if (params_.extrusion == Extrusion::per_triangle) return;
-  std::vector<uint32_t> edges, faces;
-  bool kept = false;
-  passes.host_pass("adjacency", [&] {
-    kept = edges_ && !frame.changes.topology &&
-           (!frame.changes.positions || still_welded(adjacency_, frame.geometry.positions));
-    if (kept) return;
-    adjacency_ = build_adjacency(frame.geometry.positions, frame.geometry.indices);
-    for (const Edge& e : adjacency_.edges)
-      edges.insert(edges.end(), {adjacency_.representative[e.vertex[0]],
-                                 adjacency_.representative[e.vertex[1]], e.first_face, e.face_count});
-    for (const EdgeFace& f : adjacency_.faces) faces.push_back(2 * f.triangle + (f.sign < 0 ? 1 : 0));
-  });
-  if (kept) return;
-  upload_words(*c.device, passes, edges_, edges, "shadow volumes: edges");
-  upload_words(*c.device, passes, faces_, faces, "shadow volumes: faces of edges");
-  passes.finish();  // the arrays that it copies from end here
+  edges_.build(c, passes, "shadow volumes");
 }
 
 // Every list can hold the most that any light could ask for: nothing is ever cut off.
@@ -82,7 +45,7 @@ ExtractPush Volumes::extract_push(const Case& c) const {
   ExtractPush p{};
   p.light = light_.towards;
   p.positions = c.geometry->positions.address(), p.indices = c.geometry->indices.address();
-  p.facing = facing_.address(), p.edges = edges_.address(), p.faces = faces_.address();
+  p.facing = facing_.address(), p.edges = edges_.edges().address(), p.faces = edges_.faces().address();
   p.lists = lists_.address(), p.draws = draws_.address();
   p.vertex_count = c.geometry->vertex_count, p.indices_per_quad = indices_per_quad_;
   return p;
@@ -120,7 +83,7 @@ void Volumes::extract(const Case& c, Variant variant, gpu::PassRecorder& passes)
     commands.dispatch(facing_pipeline_, p, (p.count + group - 1) / group);
   });
   passes.device_pass("silhouettes", [&](gpu::Commands& commands) {
-    p.count = static_cast<uint32_t>(adjacency_.edges.size());
+    p.count = edges_.count();
     if (silhouette) commands.dispatch(silhouette_pipeline_, p, (p.count + group - 1) / group);
     commands.barrier();
     commands.copy(draws_, draws_read_back_, sizeof(Draws));
@@ -143,11 +106,10 @@ void Volumes::draw(gpu::Commands& commands, const gpu::GraphicsPipeline& pipelin
 }
 
 uint64_t Volumes::bytes() const {
-  uint64_t sum = edges_.bytes() + faces_.bytes() + facing_.bytes() + lists_.bytes() + draws_.bytes() +
-                 draws_read_back_.bytes();
+  uint64_t sum =
+      edges_.bytes() + facing_.bytes() + lists_.bytes() + draws_.bytes() + draws_read_back_.bytes();
   for (const gpu::Buffer& b : indices_) sum += b.bytes();
-  return sum + (adjacency_.welded.size() + adjacency_.representative.size()) * sizeof(uint32_t) +
-         adjacency_.edges.size() * sizeof(Edge) + adjacency_.faces.size() * sizeof(EdgeFace);
+  return sum;
 }
 
 }  // namespace penumbra::shadow_volume

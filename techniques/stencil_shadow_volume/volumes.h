@@ -5,14 +5,12 @@
 #include "gpu/buffer.h"
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
+#include "techniques/common/edges_on_device.h"
 #include "techniques/common/light_emission.h"
 #include "techniques/stencil_shadow_volume/params.h"
 #include "techniques/stencil_shadow_volume/shaders/shared.h"
 
 namespace penumbra::shadow_volume {
-
-// Whether `adjacency` still welds only vertices that lie at one place.
-bool still_welded(const Adjacency& adjacency, const std::vector<Vec3f>& positions);
 
 class Volumes {
  public:
@@ -38,8 +36,8 @@ class Volumes {
 
   Params params_;
   gpu::ComputePipeline facing_pipeline_, silhouette_pipeline_;
-  Adjacency adjacency_;
-  gpu::Buffer edges_, faces_, facing_, lists_, draws_, draws_read_back_;
+  EdgesOnDevice edges_;
+  gpu::Buffer facing_, lists_, draws_, draws_read_back_;
   gpu::Buffer indices_[LIST_COUNT];
   LightEmission light_;
   Vec4f apex_;
