@@ -6,7 +6,7 @@
 #pragma once
 #include "techniques/common/sample_groups.h"
 #include "techniques/gears/frame_state.h"
-#include "techniques/gears/triangle_order.h"
+#include "techniques/common/triangle_order.h"
 #include "techniques/gears/walker.h"
 
 namespace penumbra::gears {

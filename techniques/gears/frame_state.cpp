@@ -4,7 +4,6 @@
 #include <bit>
 
 #include "shaders/gears_prepare_triangles.h"
-#include "shaders/gears_resolve.h"
 
 namespace penumbra::gears {
 
@@ -119,32 +118,6 @@ uint64_t FrameState::bytes() const {
                                &list, &slots, &resume, &walked})
     sum += b->bytes();
   return sum;
-}
-
-void Resolve::setup(const FrameState& state) {
-  const MaskLayout& m = state.layout;
-  const gpu::Specialization constants[] = {{0, wide_lanes},
-                                           {1, static_cast<uint32_t>(m.samples)},
-                                           {2, static_cast<uint32_t>(m.columns)},
-                                           {3, static_cast<uint32_t>(m.pitch)},
-                                           {4, static_cast<uint32_t>(m.words)},
-                                           {5, m.packed},
-                                           {6, m.weighted}};
-  pipeline_ = gpu::ComputePipeline(*state.device, gears_resolve_spv, sizeof(ResolveConstants), constants);
-}
-
-void Resolve::run(const FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
-  if (state.walk_resolves()) return;
-  ResolveConstants pc{};
-  pc.walked = state.masks_address(in);
-  pc.masks = in.device.mask->address();
-  pc.visibility = in.device.visibility->address();
-  pc.weights = state.layout.weighted ? state.weights.address() : 0;
-  pc.pixels = state.pixels();
-  pc.mask_words = static_cast<uint32_t>(state.layout.mask_words);
-  passes.device_pass("resolve", [&](gpu::Commands& commands) {
-    commands.dispatch(pipeline_, pc, groups_for(state.pixels(), wide_lanes));
-  });
 }
 
 }  // namespace penumbra::gears

@@ -58,14 +58,4 @@ inline double wide(const uint32_t (&words)[2]) { return words[0] + 4294967296.0 
 
 gpu::ComputePipeline prepare_pipeline(const FrameState& state);
 
-// Masks as walked to masks and visibility as handed out.
-class Resolve {
- public:
-  void setup(const FrameState& state);
-  void run(const FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
-
- private:
-  gpu::ComputePipeline pipeline_;
-};
-
 }  // namespace penumbra::gears

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "techniques/common/mask_resolve.h"
 #include "techniques/gears/cells.h"
 #include "techniques/gears/clusters.h"
 
@@ -33,7 +34,7 @@ class Gears final : public Technique {
   void setup(const Case& c, gpu::PassRecorder& passes) override {
     state_.set_light(c, passes);
     ready_ = state_.layout;
-    resolve_.setup(state_);
+    resolve_.setup(*state_.device, state_.layout);
     clusters() ? clusters_.setup(state_) : cells_.setup(state_);
   }
 
@@ -51,7 +52,7 @@ class Gears final : public Technique {
 
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {
     clusters() ? clusters_.render(state_, in, passes) : cells_.render(state_, in, passes);
-    resolve_.run(state_, in, passes);
+    resolve(in, passes);
     last_ = in;
     passes_ = &passes;
   }
@@ -61,7 +62,7 @@ class Gears final : public Technique {
     Counters c;
     if (!passes_) return c;
     clusters() ? clusters_.count(state_, last_, *passes_, c) : cells_.count(state_, last_, *passes_, c);
-    resolve_.run(state_, last_, *passes_);
+    resolve(last_, *passes_);
     passes_->finish();
     c["structure_bytes"] = static_cast<double>(structure_bytes());
     return c;
@@ -70,6 +71,11 @@ class Gears final : public Technique {
   uint64_t structure_bytes() const override { return state_.bytes() + clusters_.bytes() + cells_.bytes(); }
 
  private:
+  void resolve(const RenderInput& in, gpu::PassRecorder& passes) const {
+    if (state_.walk_resolves()) return;
+    resolve_.run(state_.masks_address(in), in.device.mask->address(), in.device.visibility->address(),
+                 state_.layout.weighted ? state_.weights.address() : 0, state_.pixels(), passes);
+  }
   bool clusters() const { return params_.assignment == GearsParams::Assignment::clusters; }
 
   GearsParams params_;
@@ -78,7 +84,7 @@ class Gears final : public Technique {
   bool built_ = false;
   RenderInput last_;
   gpu::PassRecorder* passes_ = nullptr;
-  Resolve resolve_;
+  MaskResolve resolve_;
   Clusters clusters_;
   Cells cells_;
 };

@@ -1,6 +1,7 @@
 // Parameters of gears.
 #pragma once
 #include "technique/params.h"
+#include "techniques/common/triangle_order.h"
 
 namespace penumbra {
 
@@ -8,13 +9,12 @@ struct GearsParams {
   enum class Assignment { triangles, clusters };
   enum class Extrusion { conservative, paper };
   enum class Backend { vulkan, cpu };
-  enum class TriangleOrder { morton, kd };
 
   int grid_size = 128;
   Assignment assignment = Assignment::clusters;
   Extrusion extrusion_length = Extrusion::conservative;
   Backend backend = Backend::vulkan;
-  TriangleOrder triangle_order = TriangleOrder::kd;
+  SpatialOrder triangle_order = SpatialOrder::kd;
   int list_budget_mib = 256;
   int leaf_batch = 8;
   int dispatch_turns = 20000;

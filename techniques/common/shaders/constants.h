@@ -27,11 +27,18 @@ struct PrefixScanConstants {
   PENUMBRA_UINT per_lane;  // consecutive values of a lane; a block is a subgroup's
 };
 
+struct MaskResolveConstants {
+  PENUMBRA_ADDRESS(Uints) walked, masks;  // the same where PACKED
+  PENUMBRA_ADDRESS(Floats) visibility, weights;
+  PENUMBRA_UINT pixels, mask_words;
+};
+
 #undef PENUMBRA_UINT
 #undef PENUMBRA_ADDRESS
 #ifdef __cplusplus
 static_assert(sizeof(SampleGroupsConstants) <= 128);
 static_assert(sizeof(PrefixScanConstants) <= 128);
+static_assert(sizeof(MaskResolveConstants) <= 128 && sizeof(MaskResolveConstants) % 8 == 0);
 }  // namespace
 #endif
 #endif

@@ -92,12 +92,6 @@ struct BinTrianglesConstants {
   PENUMBRA_UINT cell_begin, cell_end, chunk_begin;
 };
 
-struct ResolveConstants {
-  PENUMBRA_ADDRESS(Uints) walked, masks;  // the same where PACKED
-  PENUMBRA_ADDRESS(Floats) visibility, weights;
-  PENUMBRA_UINT pixels, mask_words;
-};
-
 #undef PENUMBRA_UINT
 #undef PENUMBRA_ADDRESS
 #ifdef __cplusplus
@@ -108,7 +102,6 @@ static_assert(sizeof(WalkCellsConstants) <= 128 && sizeof(WalkCellsConstants) % 
 static_assert(sizeof(FitGridConstants) <= 128 && sizeof(FitGridConstants) % 8 == 0);
 static_assert(sizeof(BinSamplesConstants) <= 128 && sizeof(BinSamplesConstants) % 8 == 0);
 static_assert(sizeof(BinTrianglesConstants) <= 128 && sizeof(BinTrianglesConstants) % 8 == 0);
-static_assert(sizeof(ResolveConstants) <= 128 && sizeof(ResolveConstants) % 8 == 0);
 }  // namespace
 #endif
 #endif

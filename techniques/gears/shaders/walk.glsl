@@ -46,7 +46,7 @@ vec3 sample_origin;
 uint pairs = 0u, necessary = 0u, nodes = 0u, leaves = 0u;
 
 #ifdef GRID
-#include "techniques/gears/shaders/mask_grid.glsl"
+#include "techniques/common/shaders/mask_grid.glsl"
 #else
 #include "techniques/gears/shaders/mask_samples.glsl"
 #endif

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "techniques/gears/params.h"
 
-namespace penumbra::gears {
+namespace penumbra {
+
+enum class SpatialOrder { morton, kd };
 
 // A complete tree of `arity` children per node and `arity` triangles per leaf; node n has the children
 // n * arity + 1 ... n * arity + arity.
@@ -21,6 +22,6 @@ struct TriangleOrder {
 
 // Triangles whose extent is a large part of the scene's would blow up all boxes above them: at most
 // `max_outside` of them stay outside the tree.
-TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, GearsParams::TriangleOrder kind);
+TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, SpatialOrder kind);
 
-}  // namespace penumbra::gears
+}  // namespace penumbra

@@ -1,4 +1,4 @@
-#include "techniques/gears/triangle_order.h"
+#include "techniques/common/triangle_order.h"
 
 #include <algorithm>
 #include <numeric>
@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "samples/view_samples.h"
 
-namespace penumbra::gears {
+namespace penumbra {
 namespace {
 
 constexpr std::size_t max_outside = 32;
@@ -98,7 +98,7 @@ std::vector<uint32_t> take_outside(const Geometry& geometry, std::vector<Item>& 
 
 }  // namespace
 
-TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, GearsParams::TriangleOrder kind) {
+TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, SpatialOrder kind) {
   std::vector<Item> items(geometry.triangle_count());
   parallel_for(items.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
@@ -120,7 +120,7 @@ TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, GearsPar
     capacity *= arity;
   }
   order.node_count = order.first_leaf + order.leaf_count;
-  if (kind == GearsParams::TriangleOrder::morton)
+  if (kind == SpatialOrder::morton)
     sort_by_morton(items);
   else if (!items.empty())
     cut(items.data(), items.data() + items.size(), capacity / arity, arity);
@@ -130,4 +130,4 @@ TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, GearsPar
   return order;
 }
 
-}  // namespace penumbra::gears
+}  // namespace penumbra

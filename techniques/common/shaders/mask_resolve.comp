@@ -1,7 +1,10 @@
 // From the masks as walked to the masks as handed out, and their visibility. Bits that no light sample owns become 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "techniques/gears/shaders/frame.glsl"
+#define PENUMBRA_COMPUTE
+#include "gpu/shaders/common.glsl"
+#include "techniques/common/shaders/buffers.glsl"
+#include "techniques/common/shaders/constants.h"
 layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint LANES = 64;
 layout(constant_id = 1) const uint SAMPLES = 256;
@@ -11,7 +14,7 @@ layout(constant_id = 4) const uint WORDS = 8;          // of the walked mask
 layout(constant_id = 5) const bool PACKED = true;      // both masks have one layout
 layout(constant_id = 6) const bool WEIGHTED = false;
 
-layout(push_constant) uniform Push { ResolveConstants pc; };
+layout(push_constant) uniform Push { MaskResolveConstants pc; };
 
 const uint HALF = PITCH > 32 ? 2 : 1;   // words of a row that takes more than one
 

@@ -1,0 +1,25 @@
+// How a mask of light samples is laid out while it is made, and the pass that hands it out.
+#pragma once
+#include "samples/light_samples.h"
+#include "scene/light.h"
+
+namespace penumbra {
+
+// Layout of a mask while it is walked. A regular grid of light samples takes `pitch` bits per row; other sets
+// one bit after the other.
+struct MaskLayout {
+  bool grid = false;
+  bool infinite = false;  // samples are directions
+  bool weighted = false;
+  int columns = 1, rows = 1, pitch = 32;
+  int samples = 1, words = 1;
+  int mask_words = 1;  // words of the mask that is handed out
+  bool packed = true;  // the walked mask is laid out as the one handed out
+  bool operator==(const MaskLayout&) const = default;
+};
+
+// True when the samples are the cell centres of a columns x rows grid on the light's rectangle.
+bool is_regular_grid(const Light& light, const LightSamples& samples);
+MaskLayout mask_layout(const Light& light, const LightSamples& samples);
+
+}  // namespace penumbra
