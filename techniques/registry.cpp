@@ -7,6 +7,7 @@
 #include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/shadow_map/shadow_map.h"
 #include "techniques/shadow_map_per_sample/shadow_map_per_sample.h"
+#include "techniques/soft_shadow_volume/soft_shadow_volume.h"
 #include "techniques/stencil_shadow_volume/stencil_shadow_volume.h"
 
 namespace penumbra {
@@ -20,6 +21,7 @@ Registry all_techniques() {
       planar_shadow_technique(),
       stencil_shadow_volume_technique(),
       alias_free_shadow_map_technique(),
+      soft_shadow_volume_technique(),
       gears_technique(),
       depth_complexity_sampling_technique(),
   };

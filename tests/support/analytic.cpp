@@ -1,5 +1,8 @@
 #include "tests/support/analytic.h"
 
+#include <cmath>
+#include <numbers>
+
 namespace penumbra::testing {
 namespace {
 
@@ -27,6 +30,33 @@ Polygon project(const Light& light, Vec3d eye, const Polygon& polygon) {
   for (const Vec3d& x : polygon)
     projected.push_back(eye + (x - eye) * (from / (from - height_over(light, x))));
   return projected;
+}
+
+// Signed area of the triangle (origin, a, b) within the unit circle about the origin.
+double area_in_circle(Vec2d a, Vec2d b) {
+  const auto sector = [](Vec2d p, Vec2d q) {
+    return std::atan2(p.x * q.y - p.y * q.x, p.x * q.x + p.y * q.y) / 2;
+  };
+  const auto triangle = [](Vec2d p, Vec2d q) { return (p.x * q.y - p.y * q.x) / 2; };
+  const Vec2d d{b.x - a.x, b.y - a.y};
+  const double dd = d.x * d.x + d.y * d.y, ad = a.x * d.x + a.y * d.y, aa = a.x * a.x + a.y * a.y;
+  const double root = ad * ad - dd * (aa - 1);
+  if (!(dd > 0) || !(root > 0)) return sector(a, b);
+  const double enter = (-ad - std::sqrt(root)) / dd, leave = (-ad + std::sqrt(root)) / dd;
+  if (leave <= 0 || enter >= 1) return sector(a, b);
+  const auto at = [&](double t) { return Vec2d{a.x + t * d.x, a.y + t * d.y}; };
+  const Vec2d p = enter > 0 ? at(enter) : a, q = leave < 1 ? at(leave) : b;
+  return (enter > 0 ? sector(a, p) : 0) + triangle(p, q) + (leave < 1 ? sector(q, b) : 0);
+}
+
+// Area of a polygon in the plane through `center`, spanned by the unit vectors u and v, within a circle.
+double area_in_circle(const Polygon& polygon, Vec3d center, double radius, Vec3d u, Vec3d v) {
+  double sum = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3d a = polygon[i] - center, b = polygon[(i + 1) % polygon.size()] - center;
+    sum += area_in_circle({dot(a, u) / radius, dot(a, v) / radius}, {dot(b, u) / radius, dot(b, v) / radius});
+  }
+  return std::abs(sum) * radius * radius;
 }
 
 }  // namespace
@@ -63,6 +93,26 @@ double rectangle_visibility(const Light& light, Vec3d position, Vec3d normal,
     hidden += area(project(light, position, clip_to_pyramid(between, position, lit)));
   }
   return (area(lit) - hidden) / area(whole);
+}
+
+double disc_visibility(Vec3d center, double radius, Vec3d position, Vec3d normal,
+                       std::span<const Polygon> occluders) {
+  const Vec3d towards = normalize(position - center);
+  const Vec3d any = std::abs(towards.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+  const Vec3d u = normalize(cross(any, towards)), v = cross(towards, u);
+  const auto square = [&](double half) {
+    const Vec3d a = u * half, b = v * half;
+    return Polygon{center - a - b, center + a - b, center + a + b, center - a + b};
+  };
+  const double offset = dot(normal, position), far = length(position - center);
+  const double lit = area_in_circle(clip(square(2 * radius), normal, offset), center, radius, u, v);
+  double hidden = 0;
+  for (const Polygon& occluder : occluders) {
+    Polygon seen = clip_to_pyramid(clip(occluder, towards, dot(towards, center)), position, square(2 * radius));
+    for (Vec3d& x : seen) x = position + (x - position) * (far / (far - dot(towards, x - center)));
+    hidden += area_in_circle(clip(seen, normal, offset), center, radius, u, v);
+  }
+  return (lit - hidden) / (std::numbers::pi * radius * radius);
 }
 
 std::vector<Polygon> faces_towards(Vec3d position, Vec3d lo, Vec3d hi) {

@@ -20,6 +20,10 @@ double area(const Polygon& polygon);
 double rectangle_visibility(const Light& rectangle, Vec3d position, Vec3d normal,
                             std::span<const Polygon> occluders);
 
+// The same for the disc through `center` that faces the position, as a share of the disc's area.
+double disc_visibility(Vec3d center, double radius, Vec3d position, Vec3d normal,
+                       std::span<const Polygon> occluders);
+
 // The faces of a box that face `position`: disjoint as seen from there.
 std::vector<Polygon> faces_towards(Vec3d position, Vec3d lo, Vec3d hi);
 

@@ -1,0 +1,21 @@
+// A light as wedges are made for it: whole, or cut into parts.
+#pragma once
+#include <vector>
+
+#include "scene/light.h"
+#include "techniques/soft_shadow_volume/shaders/shared.h"
+
+namespace penumbra::soft_shadow_volume {
+
+// SHAPE_* of a light kind that the technique takes.
+uint32_t shape_of(LightKind kind);
+
+struct Part {
+  AreaLight light{};
+  float share = 1;  // of the whole light's area
+};
+
+// Parts of a rectangle row by row; one part of any other light.
+std::vector<Part> parts_of(const Light& light, int split);
+
+}  // namespace penumbra::soft_shadow_volume

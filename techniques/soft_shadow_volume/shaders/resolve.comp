@@ -1,0 +1,29 @@
+// Visibility of one light, or of one part of a split light: what is above the horizon less what the sums say is
+// covered. Overlapping casters count twice, so the sum may exceed the light.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define PENUMBRA_COMPUTE
+#include "techniques/soft_shadow_volume/shaders/buffers.glsl"
+#include "techniques/soft_shadow_volume/shaders/coverage.glsl"
+layout(local_size_x = WEDGE_GROUP) in;
+layout(constant_id = 0) const uint SHAPE = SHAPE_RECTANGLE;
+layout(push_constant, scalar) uniform Push { ResolvePush push; };
+
+const bool disc = SHAPE == SHAPE_DISC;
+
+float lit_share(vec3 p, vec3 n, vec2 sums) {
+  const float volumes = sums.x + float(push.extraction.at.eye_count);
+  if (SHAPE == SHAPE_POINT) return volumes == 0.0 && dot(n, push.light.center.xyz - p) > 0.0 ? 1.0 : 0.0;
+  if (!disc && dot(cross(push.light.scale_u.xyz, push.light.scale_v.xyz), p - push.light.center.xyz) <= 0.0) return 0.0;
+  const View v = view_of(p, n, push.light, disc);
+  const float above = area_above(v, disc), all = disc ? pi : 4.0;
+  return clamp(above - volumes * above - sums.y, 0.0, above) / all;
+}
+
+void main() {
+  const uint pixel = linear_invocation();
+  if (pixel >= push.count) return;
+  const float lit = lit_share(push.position.at[pixel].xyz, push.normal.at[pixel].xyz, push.sums.at[pixel]);
+  const float before = push.first != 0 ? 0.0 : push.visibility.at[pixel];
+  push.visibility.at[pixel] = before + push.share * lit;
+}

@@ -1,0 +1,218 @@
+#include "techniques/soft_shadow_volume/wedge_pass.h"
+
+#include <array>
+
+#include "shaders/soft_shadow_volume_near_cap_frag.h"
+#include "shaders/soft_shadow_volume_near_cap_vert.h"
+#include "shaders/soft_shadow_volume_resolve.h"
+#include "shaders/soft_shadow_volume_side_frag.h"
+#include "shaders/soft_shadow_volume_side_vert.h"
+#include "shaders/soft_shadow_volume_wedge_frag.h"
+#include "shaders/soft_shadow_volume_wedge_vert.h"
+#include "shaders/soft_shadow_volume_wedges.h"
+
+namespace penumbra::soft_shadow_volume {
+namespace {
+
+constexpr uint32_t group = 64;
+uint64_t groups(uint32_t count) { return (uint64_t{count} + group - 1) / group; }
+
+uint32_t pixels(const RenderInput& in) {
+  return static_cast<uint32_t>(in.view_samples->width()) * static_cast<uint32_t>(in.view_samples->height());
+}
+
+gpu::Image image(const RenderInput& in, VkFormat format, VkImageUsageFlags usage, const char* what) {
+  gpu::ImageDesc desc;
+  desc.width = static_cast<uint32_t>(in.view_samples->width());
+  desc.height = static_cast<uint32_t>(in.view_samples->height());
+  desc.format = format, desc.usage = usage;
+  return gpu::Image(*in.scene_case->device, desc, what);
+}
+
+gpu::GraphicsDesc adding(gpu::Spirv vertex, gpu::Spirv fragment, uint32_t push_bytes) {
+  gpu::GraphicsDesc desc;
+  desc.vertex = vertex, desc.fragment = fragment, desc.push_bytes = push_bytes;
+  desc.color_formats = {sum_format}, desc.blend_add = true;
+  return desc;
+}
+
+// No plane cuts what is near the eye: depth is clamped.
+gpu::GraphicsPipeline volume_pipeline(gpu::Device& device, gpu::Spirv vertex, gpu::Spirv fragment) {
+  gpu::GraphicsDesc desc = adding(vertex, fragment, sizeof(DrawPush));
+  desc.images = {gpu::ImageUse::sampled_nearest};
+  desc.write_mask = VK_COLOR_COMPONENT_R_BIT, desc.depth_clamp = true;
+  return gpu::GraphicsPipeline(device, desc);
+}
+
+// Drawn where the far side of a wedge is behind the view sample.
+gpu::GraphicsPipeline wedge_pipeline(gpu::Device& device, uint32_t shape, bool table, bool counting) {
+  gpu::GraphicsDesc desc =
+      adding(soft_shadow_volume_wedge_vert_spv, soft_shadow_volume_wedge_frag_spv, sizeof(WedgePush));
+  desc.constants = {{0, shape}, {1, table ? 1U : 0U}, {2, counting ? 1U : 0U}};
+  desc.images.assign(4, gpu::ImageUse::sampled_nearest);
+  desc.depth_format = VK_FORMAT_D32_SFLOAT, desc.depth_test = desc.depth_clamp = true;
+  desc.depth_compare = VK_COMPARE_OP_LESS_OR_EQUAL, desc.cull = VK_CULL_MODE_BACK_BIT;
+  if (!counting) desc.write_mask = VK_COLOR_COMPONENT_G_BIT;
+  return gpu::GraphicsPipeline(device, desc);
+}
+
+}  // namespace
+
+bool sums_supported(gpu::Device& device) {
+  VkFormatProperties properties;
+  vkGetPhysicalDeviceFormatProperties(device.physical(), sum_format, &properties);
+  return properties.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
+}
+
+void WedgePass::setup(gpu::Device& device, uint32_t shape, gpu::PassRecorder& passes) {
+  shape_ = shape;
+  const bool table = params_.coverage == Coverage::table;
+  tables_.make(device, passes, shape, table ? params_.table_size : 0);
+  const gpu::Specialization of_shape[] = {{0, shape}};
+  wedge_pipeline_ = gpu::ComputePipeline(device, soft_shadow_volume_wedges_spv, sizeof(WedgesPush), of_shape);
+  resolve_pipeline_ =
+      gpu::ComputePipeline(device, soft_shadow_volume_resolve_spv, sizeof(ResolvePush), of_shape);
+  sides_ = volume_pipeline(device, soft_shadow_volume_side_vert_spv, soft_shadow_volume_side_frag_spv);
+  near_caps_ =
+      volume_pipeline(device, soft_shadow_volume_near_cap_vert_spv, soft_shadow_volume_near_cap_frag_spv);
+  coverage_ = wedge_pipeline(device, shape, table, false);
+  counting_ = wedge_pipeline(device, shape, false, true);
+}
+
+void WedgePass::begin(const RenderInput& in, gpu::PassRecorder& passes) {
+  const bool fits = sums_ && sums_.desc().width == static_cast<uint32_t>(in.view_samples->width()) &&
+                    sums_.desc().height == static_cast<uint32_t>(in.view_samples->height());
+  if (!fits) {
+    constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    constexpr VkFormat four = VK_FORMAT_R32G32B32A32_SFLOAT;
+    position_ = image(in, four, read, "soft shadow volumes: positions");
+    normal_ = image(in, four, read, "soft shadow volumes: normals");
+    sums_ = image(in, sum_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                  "soft shadow volumes: sums");
+    sum_buffer_ = gpu::Buffer(*in.scene_case->device, std::size_t{pixels(in)} * sizeof(Vec2f),
+                              gpu::Memory::device, "soft shadow volumes: sums");
+    const std::array views{position_.view(), normal_.view(), tables_.angles(), tables_.areas()};
+    coverage_.bind_images(views), counting_.bind_images(views);
+    sides_.bind_images(std::span(views).first(1)), near_caps_.bind_images(std::span(views).first(1));
+  }
+  passes.device_pass("view_copy", [&](gpu::Commands& commands) {
+    if (!fits) commands.initialise(position_), commands.initialise(normal_), commands.initialise(sums_);
+    commands.barrier();
+    commands.copy_buffer_to_image(in.view_samples->position(), position_, VK_IMAGE_ASPECT_COLOR_BIT);
+    commands.copy_buffer_to_image(in.view_samples->geometric_normal(), normal_, VK_IMAGE_ASPECT_COLOR_BIT);
+  });
+}
+
+void WedgePass::make_wedges(const RenderInput& in, const Silhouettes& silhouettes, const Part& part,
+                            gpu::PassRecorder& passes) {
+  const std::size_t need = std::size_t{silhouettes.count()} * sizeof(Wedge);
+  if (!wedges_ || wedges_.bytes() < need)
+    gpu::ensure(wedges_, *in.scene_case->device, need + need / 4 + sizeof(Wedge), gpu::Memory::device,
+                "soft shadow volumes: wedges");
+  WedgesPush p{};
+  p.light = part.light, p.positions = in.scene_case->geometry->positions.address();
+  p.silhouettes = silhouettes.list().address(), p.wedges = wedges_.address();
+  p.count = silhouettes.count(), p.loose = params_.wedges == WedgeKind::loose ? 1 : 0;
+  passes.device_pass("wedges", [&](gpu::Commands& commands) {
+    if (p.count > 0) commands.dispatch(wedge_pipeline_, p, groups(p.count));
+  });
+}
+
+void WedgePass::draw_sides(gpu::Commands& commands, const RenderInput& in, const Silhouettes& silhouettes,
+                           const Part& part) const {
+  const gpu::RenderTarget color{.view = sums_.view()};
+  commands.begin_rendering(sums_.desc().width, sums_.desc().height, std::array{color}, nullptr);
+  DrawPush p{};
+  p.clip_from_world = to_float(
+      in.scene_case->frame->camera.clip_from_world(in.view_samples->width(), in.view_samples->height()));
+  p.center = part.light.center, p.positions = in.scene_case->geometry->positions.address();
+  p.silhouettes = silhouettes.list().address(), p.caps = silhouettes.extraction().address();
+  p.indices = in.scene_case->geometry->indices.address(), p.seen = in.view_samples->triangle().address();
+  p.width = sums_.desc().width;
+  if (silhouettes.count() > 0) {
+    commands.bind(sides_);
+    commands.push(sides_, &p, sizeof p);
+    commands.draw(6 * silhouettes.count());
+  }
+  if (silhouettes.near_caps() > 0) {
+    commands.bind(near_caps_);
+    commands.push(near_caps_, &p, sizeof p);
+    commands.draw(silhouettes.near_caps());
+  }
+  commands.end_rendering();
+}
+
+void WedgePass::draw_wedges(gpu::Commands& commands, const RenderInput& in, const Silhouettes& silhouettes,
+                            const Part& part, bool counting) const {
+  const gpu::RenderTarget color{.view = sums_.view(),
+                                .load = counting ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD};
+  const gpu::RenderTarget depth{.view = in.view_samples->depth().view(), .load = VK_ATTACHMENT_LOAD_OP_LOAD};
+  commands.begin_rendering(sums_.desc().width, sums_.desc().height, std::array{color}, &depth,
+                           VK_FORMAT_D32_SFLOAT);
+  WedgePush p{};
+  p.clip_from_world = to_float(
+      in.scene_case->frame->camera.clip_from_world(in.view_samples->width(), in.view_samples->height()));
+  p.center = part.light.center, p.scale_u = part.light.scale_u, p.scale_v = part.light.scale_v;
+  p.wedges = wedges_.address();
+  const gpu::GraphicsPipeline& pipeline = counting ? counting_ : coverage_;
+  if (silhouettes.count() > 0) {
+    commands.bind(pipeline);
+    commands.push(pipeline, &p, sizeof p);
+    commands.draw(WEDGE_VERTICES * silhouettes.count());
+  }
+  commands.end_rendering();
+}
+
+void WedgePass::resolve(const RenderInput& in, const Silhouettes& silhouettes, const Part& part, bool first,
+                        gpu::PassRecorder& passes) const {
+  const ViewSamples& view = *in.view_samples;
+  ResolvePush p{};
+  p.light = part.light, p.position = view.position().address(), p.normal = view.geometric_normal().address();
+  p.sums = sum_buffer_.address(), p.visibility = in.device.visibility->address();
+  p.extraction = silhouettes.extraction().address();
+  p.count = pixels(in), p.first = first ? 1 : 0, p.share = part.share;
+  passes.device_pass("resolve", [&](gpu::Commands& commands) {
+    commands.copy_image_to_buffer(sums_, sum_buffer_, VK_IMAGE_ASPECT_COLOR_BIT);
+    commands.barrier();
+    commands.dispatch(resolve_pipeline_, p, groups(p.count));
+  });
+}
+
+void WedgePass::run(const RenderInput& in, const Silhouettes& silhouettes, const Part& part, bool first,
+                    gpu::PassRecorder& passes) {
+  const bool soft = shape_ != SHAPE_POINT;
+  if (soft) make_wedges(in, silhouettes, part, passes);
+  passes.device_pass("hard_shadow",
+                     [&](gpu::Commands& commands) { draw_sides(commands, in, silhouettes, part); });
+  if (soft)
+    passes.device_pass("coverage",
+                       [&](gpu::Commands& commands) { draw_wedges(commands, in, silhouettes, part, false); });
+  resolve(in, silhouettes, part, first, passes);
+}
+
+WedgeCounts WedgePass::count(const RenderInput& in, const Silhouettes& silhouettes, const Part& part,
+                             gpu::PassRecorder& passes) {
+  WedgeCounts counts;
+  if (shape_ == SHAPE_POINT || silhouettes.count() == 0) return counts;
+  make_wedges(in, silhouettes, part, passes);
+  std::vector<Vec2f> sums(pixels(in));
+  std::vector<Wedge> wedges(silhouettes.count());
+  passes.device_pass("coverage", [&](gpu::Commands& commands) {
+    draw_wedges(commands, in, silhouettes, part, true);
+    commands.barrier();
+    commands.copy_image_to_buffer(sums_, sum_buffer_, VK_IMAGE_ASPECT_COLOR_BIT);
+  });
+  gpu::download(passes, "download", sum_buffer_, sums.data(), sums.size() * sizeof(Vec2f));
+  gpu::download(passes, "download", wedges_, wedges.data(), wedges.size() * sizeof(Wedge));
+  passes.finish();
+  for (const Vec2f& s : sums) counts.fragments += double(s.x), counts.pixels += double(s.y);
+  for (const Wedge& w : wedges) counts.whole_picture += w.edge[1].w == float(WHOLE_PICTURE);
+  return counts;
+}
+
+uint64_t WedgePass::bytes() const {
+  return tables_.bytes() + position_.bytes() + normal_.bytes() + sums_.bytes() + sum_buffer_.bytes() +
+         wedges_.bytes();
+}
+
+}  // namespace penumbra::soft_shadow_volume
