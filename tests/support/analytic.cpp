@@ -108,7 +108,8 @@ double disc_visibility(Vec3d center, double radius, Vec3d position, Vec3d normal
   const double lit = area_in_circle(clip(square(2 * radius), normal, offset), center, radius, u, v);
   double hidden = 0;
   for (const Polygon& occluder : occluders) {
-    Polygon seen = clip_to_pyramid(clip(occluder, towards, dot(towards, center)), position, square(2 * radius));
+    Polygon seen =
+        clip_to_pyramid(clip(occluder, towards, dot(towards, center)), position, square(2 * radius));
     for (Vec3d& x : seen) x = position + (x - position) * (far / (far - dot(towards, x - center)));
     hidden += area_in_circle(clip(seen, normal, offset), center, radius, u, v);
   }

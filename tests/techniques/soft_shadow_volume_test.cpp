@@ -1,5 +1,5 @@
-// soft_shadow_volume against closed forms in double precision: exact where its two assumptions hold, and off by
-// what they say where they do not.
+// soft_shadow_volume against closed forms in double precision: exact where its two assumptions hold, and off
+// by what they say where they do not.
 #include "techniques/soft_shadow_volume/soft_shadow_volume.h"
 
 #include <functional>
@@ -67,7 +67,7 @@ Agreement compare(const Stage& stage, const Rendered& r,
     const double t = truth(i, p, n), error = double(r.visibility[i]) - t;
     a.worst = std::max(a.worst, std::abs(error));
     a.mean += std::abs(error), a.signed_mean += error;
-    a.umbra += t < 1e-9, a.lit += t > 1 - 1e-9, a.penumbra += t > 0.01 && t < 0.99;
+    a.umbra += t<1e-9, a.lit += t> 1 - 1e-9, a.penumbra += t > 0.01 && t < 0.99;
     a.low += horizon < 0.99 && horizon > 0.01;
     ++a.pixels;
   }
@@ -75,8 +75,8 @@ Agreement compare(const Stage& stage, const Rendered& r,
   return a;
 }
 
-// Boxes one after the other hide the light; seen from any view sample their shadows must not overlap. Those that
-// a view sample lies on do not: they are convex, and the horizon says it all.
+// Boxes one after the other hide the light; seen from any view sample their shadows must not overlap. Those
+// that a view sample lies on do not: they are convex, and the horizon says it all.
 Agreement against_boxes(const Stage& stage, const Rendered& r, const std::vector<Box3>& all) {
   return compare(stage, r, [&](std::size_t pixel, Vec3d p, Vec3d n) {
     const uint32_t t = stage.view.host().triangle[pixel];

@@ -23,7 +23,8 @@ float lit_share(vec3 p, vec3 n, vec2 sums) {
 void main() {
   const uint pixel = linear_invocation();
   if (pixel >= push.count) return;
-  const float lit = lit_share(push.position.at[pixel].xyz, push.normal.at[pixel].xyz, push.sums.at[pixel]);
+  const vec4 position = push.position.at[pixel];  // w: depth, 0 where nothing is seen
+  const float lit = position.w == 0.0 ? 1.0 : lit_share(position.xyz, push.normal.at[pixel].xyz, push.sums.at[pixel]);
   const float before = push.first != 0 ? 0.0 : push.visibility.at[pixel];
   push.visibility.at[pixel] = before + push.share * lit;
 }
