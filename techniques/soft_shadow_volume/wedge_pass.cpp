@@ -56,6 +56,28 @@ gpu::GraphicsPipeline wedge_pipeline(gpu::Device& device, uint32_t shape, bool t
   return gpu::GraphicsPipeline(device, desc);
 }
 
+// A little more than the scene takes up: nothing is seen beyond.
+Box bounds_of(const RenderInput& in) {
+  Box b = in.scene_case->frame->geometry.bounds;
+  const float pad = 1e-4f * b.diagonal();
+  b.lo = b.lo - Vec3f{pad, pad, pad}, b.hi = b.hi + Vec3f{pad, pad, pad};
+  return b;
+}
+
+// The side of the bounds opposite the light, if it is outside: every ray from it through the scene ends
+// there.
+void end_sides(const Box& bounds, DrawPush& p) {
+  float farthest = 0;
+  p.center.w = -1;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool above : {false, true}) {
+      const float beyond = above ? p.center[axis] - bounds.hi[axis] : bounds.lo[axis] - p.center[axis];
+      if (beyond <= farthest) continue;
+      farthest = beyond, p.center.w = static_cast<float>(axis);
+      p.end = above ? bounds.lo[axis] : bounds.hi[axis];
+    }
+}
+
 }  // namespace
 
 bool sums_supported(gpu::Device& device) {
@@ -111,7 +133,14 @@ void WedgePass::make_wedges(const RenderInput& in, const Silhouettes& silhouette
                 "soft shadow volumes: wedges");
   WedgesPush p{};
   p.light = part.light, p.positions = in.scene_case->geometry->positions.address();
+  const Box bounds = bounds_of(in);
+  p.lo = {bounds.lo.x, bounds.lo.y, bounds.lo.z, 0}, p.hi = {bounds.hi.x, bounds.hi.y, bounds.hi.z, 0};
   p.silhouettes = silhouettes.list().address(), p.wedges = wedges_.address();
+  const std::size_t index_bytes = std::size_t{silhouettes.count()} * WEDGE_INDICES * sizeof(uint32_t);
+  if (!indices_ || indices_.bytes() < index_bytes)
+    gpu::ensure(indices_, *in.scene_case->device, index_bytes + index_bytes / 4 + sizeof(Wedge),
+                gpu::Memory::device, "soft shadow volumes: triangles of wedges");
+  p.indices = indices_.address();
   p.count = silhouettes.count(), p.loose = params_.wedges == WedgeKind::loose ? 1 : 0;
   passes.device_pass("wedges", [&](gpu::Commands& commands) {
     if (p.count > 0) commands.dispatch(wedge_pipeline_, p, groups(p.count));
@@ -129,6 +158,7 @@ void WedgePass::draw_sides(gpu::Commands& commands, const RenderInput& in, const
   p.silhouettes = silhouettes.list().address(), p.caps = silhouettes.extraction().address();
   p.indices = in.scene_case->geometry->indices.address(), p.seen = in.view_samples->triangle().address();
   p.width = sums_.desc().width;
+  end_sides(bounds_of(in), p);
   if (silhouettes.count() > 0) {
     commands.bind(sides_);
     commands.push(sides_, &p, sizeof p);
@@ -158,7 +188,7 @@ void WedgePass::draw_wedges(gpu::Commands& commands, const RenderInput& in, cons
   if (silhouettes.count() > 0) {
     commands.bind(pipeline);
     commands.push(pipeline, &p, sizeof p);
-    commands.draw(WEDGE_VERTICES * silhouettes.count());
+    commands.draw_indexed(indices_, WEDGE_INDICES * silhouettes.count());
   }
   commands.end_rendering();
 }
@@ -212,7 +242,7 @@ WedgeCounts WedgePass::count(const RenderInput& in, const Silhouettes& silhouett
 
 uint64_t WedgePass::bytes() const {
   return tables_.bytes() + position_.bytes() + normal_.bytes() + sums_.bytes() + sum_buffer_.bytes() +
-         wedges_.bytes();
+         wedges_.bytes() + indices_.bytes();
 }
 
 }  // namespace penumbra::soft_shadow_volume

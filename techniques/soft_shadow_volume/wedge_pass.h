@@ -46,7 +46,7 @@ class WedgePass {
   gpu::ComputePipeline wedge_pipeline_, resolve_pipeline_;
   gpu::GraphicsPipeline sides_, near_caps_, coverage_, counting_;
   gpu::Image position_, normal_, sums_;
-  gpu::Buffer sum_buffer_, wedges_;
+  gpu::Buffer sum_buffer_, wedges_, indices_;
 };
 
 }  // namespace penumbra::soft_shadow_volume

@@ -40,8 +40,10 @@ struct Silhouette {
 
 // Rings have at most this many directions; see wedges.comp.
 CONSTANT MOST_DIRECTIONS = 8;
-// Sides: two triangles for each direction; the cap at infinity: a fan.
-CONSTANT WEDGE_VERTICES = 66;
+// Vertices of a wedge: its apexes, then its ring.
+CONSTANT WEDGE_VERTICES = 10;
+// Sides: two triangles for each ray; the far cap: a fan.
+CONSTANT WEDGE_INDICES = 66;
 // In place of the number of directions: the wedge covers the whole picture.
 CONSTANT WHOLE_PICTURE = 9;
 
@@ -77,9 +79,11 @@ struct ExtractPush {
 
 struct WedgesPush {
   AreaLight light;
+  vec4 lo, hi;  // bounds of the scene
   ADDRESS_OF(Vec3Array) positions;
   ADDRESS_OF(SilhouetteArray) silhouettes;
   ADDRESS_OF(WedgeArray) wedges;
+  ADDRESS_OF(UintArray) indices;  // out: WEDGE_INDICES for each
   uint count;
   uint loose;
 };
@@ -94,6 +98,7 @@ struct DrawPush {
   ADDRESS_OF(UintArray) indices;            // near caps: of the mesh
   ADDRESS_OF(UintArray) seen;               // near caps: triangle of each pixel
   uint width;
+  float end;  // sides: where they end, on the axis center.w (0, 1, 2); at infinity where that is -1
 };
 struct WedgePush {
   mat4 clip_from_world;
@@ -117,7 +122,7 @@ struct ResolvePush {
 
 #ifdef __cplusplus
 static_assert(sizeof(AreaLight) == 48 && sizeof(Silhouette) == 16 && sizeof(Wedge) == 192);
-static_assert(sizeof(ExtractPush) == 120 && sizeof(WedgesPush) == 80 && sizeof(DrawPush) == 128);
+static_assert(sizeof(ExtractPush) == 120 && sizeof(WedgesPush) == 120 && sizeof(DrawPush) == 128);
 static_assert(sizeof(WedgePush) == 128 && sizeof(ResolvePush) == 104);
 }  // namespace penumbra::soft_shadow_volume
 #endif

@@ -109,6 +109,52 @@ uint hull(vec3 mean, inout Wedge w) {
   return n;
 }
 
+// Nothing is seen beyond the scene's bounds: rays may end on the side of the box that all of them reach soonest.
+void end_rays(uint n, inout Wedge w) {
+  float soonest = 1e30, plane = 0.0;
+  int axis = -1;
+  for (int side = 0; side < 6; ++side) {
+    const int k = side >> 1;
+    const float sign_ = (side & 1) != 0 ? 1.0 : -1.0, at = (side & 1) != 0 ? push.hi[k] : push.lo[k];
+    float latest = 0.0;
+    for (uint r = 0; r < n; ++r) {
+      const float forwards = sign_ * w.ring[r][k], away = sign_ * (at - w.apex[uint(w.ring[r].w)][k]);
+      latest = forwards > 0.0 && away >= 0.0 ? max(latest, away / forwards) : 1e30;
+      if (latest >= soonest) break;
+    }
+    if (latest < soonest) soonest = latest, axis = k, plane = at;
+  }
+  if (axis < 0) return;
+  w.apex[0].w = 1.0;
+  for (uint r = 0; r < n; ++r) {
+    const vec3 from = w.apex[uint(w.ring[r].w)].xyz;
+    w.ring[r].xyz = from + (plane - from[axis]) / w.ring[r][axis] * w.ring[r].xyz;
+  }
+}
+
+void put(uint wedge, uint triangle, uint a, uint b, uint c) {
+  const uint at = wedge * WEDGE_INDICES + 3 * triangle, first = wedge * WEDGE_VERTICES;
+  push.indices.at[at] = first + a, push.indices.at[at + 1] = first + b, push.indices.at[at + 2] = first + c;
+}
+
+// Triangles that face the wedge's inside: sides, which are two triangles where they go from one apex to the other,
+// and the far cap. All slots are written; those left over are no triangles.
+void put_triangles(uint wedge, uint n, Wedge w) {
+  uint t = 0;
+  if (n == WHOLE_PICTURE) {  // either way about: one of the two is culled
+    put(wedge, t++, 0, 1, 2);
+    put(wedge, t++, 0, 2, 1);
+  } else {
+    for (uint k = 0; k < n; ++k) {
+      const uint next = k + 1 < n ? k + 1 : 0, from = uint(w.ring[k].w), to = uint(w.ring[next].w);
+      put(wedge, t++, from, 2 + k, 2 + next);
+      if (from != to) put(wedge, t++, from, 2 + next, to);
+    }
+    for (uint k = 1; k + 1 < n; ++k) put(wedge, t++, 2, 2 + k + 1, 2 + k);
+  }
+  for (; t < WEDGE_INDICES / 3; ++t) put(wedge, t, 0, 0, 0);
+}
+
 void main() {
   const uint i = linear_invocation();
   if (i >= push.count) return;
@@ -117,7 +163,7 @@ void main() {
   const vec3 center = push.light.center.xyz;
   Wedge w;
   w.edge[0] = vec4(a, float(s.weight)), w.edge[1] = vec4(b, 0);
-  w.apex[0] = vec4(a, 1), w.apex[1] = vec4(b, 1);
+  w.apex[0] = vec4(a, 0), w.apex[1] = vec4(b, 0);
   for (int k = 0; k < 8; ++k) w.ring[k] = vec4(0);
   uint n = WHOLE_PICTURE;
   bool behind = false, reaches = false;
@@ -150,6 +196,8 @@ void main() {
       if (outside && narrow(mean, 8)) n = hull(mean, w);
     }
   }
+  if (n <= MOST_DIRECTIONS) end_rays(n, w);
   w.edge[1].w = float(n);
   push.wedges.at[i] = w;
+  put_triangles(i, n, w);
 }
