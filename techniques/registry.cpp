@@ -3,6 +3,7 @@
 #include "techniques/alias_free_shadow_map/alias_free_shadow_map.h"
 #include "techniques/depth_complexity_sampling/depth_complexity_sampling.h"
 #include "techniques/gears/gears.h"
+#include "techniques/line_space/line_space.h"
 #include "techniques/planar_shadow/planar_shadow.h"
 #include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/shadow_map/shadow_map.h"
@@ -24,6 +25,7 @@ Registry all_techniques() {
       soft_shadow_volume_technique(),
       gears_technique(),
       depth_complexity_sampling_technique(),
+      line_space_technique(),
   };
 }
 

@@ -1,0 +1,198 @@
+// Algorithm 1 [Keul2017, sec. 4.1], one node at a time and without a stack. Also compiles as C++, as members of a struct
+// (include after glsl.h) that has N, DEPTH, and the pools as tree_entry(place) and line_space_word(place).
+//
+// All in fine cells: the grid of N^(DEPTH-1) cells a side of the finest nodes that can be subdivided. A walk is at `t` on
+// its line, in fine cell `cell`; the nodes of levels 0 ... `level` around that cell have non-empty shafts for the line.
+//
+// Conservative: what the walk computes lies within the grid's slack (casters.h) of the true line, and triangles are in
+// every leaf that they come near by that much. So that nothing is skipped, the walk leaves a box by changing the cell's
+// integer coordinate, and takes for granted that it is in the box when it looks for the ways in and out.
+
+const float far_away = 1e30f;
+
+struct Line {  // o + t d
+  vec3 o, d, inverse;
+};
+
+struct Span {
+  float enter, leave;
+  uint enter_axis, leave_axis;
+};
+
+struct Walk {
+  Line line;
+  float t, last;
+  vec3 cell, start;  // start: the cell in which the segment begins; -1: it begins outside
+  uint level;
+  uint parent1, parent2, parent3, parent4;  // nodes of levels 1 to 4 around the cell; the root is node 0
+  bool done, blocked;
+};
+
+float component(vec3 v, uint axis) { return axis == 0u ? v.x : axis == 1u ? v.y : v.z; }
+
+// A direction that is nearly parallel to a plane becomes parallel to it.
+Line make_line(vec3 o, vec3 d) {
+  float tiny = 1e-9f * max(abs(d.x), max(abs(d.y), abs(d.z)));
+  Line r;
+  r.o = o;
+  r.d = VEC3(abs(d.x) > tiny ? d.x : 0.0f, abs(d.y) > tiny ? d.y : 0.0f, abs(d.z) > tiny ? d.z : 0.0f);
+  r.inverse = VEC3(1.0f / r.d.x, 1.0f / r.d.y, 1.0f / r.d.z);
+  return r;
+}
+
+vec3 at(Line r, float t) { return VEC3(r.o.x + t * r.d.x, r.o.y + t * r.d.y, r.o.z + t * r.d.z); }
+
+float meet_plane(float o, float d, float inverse, float plane, float parallel) {
+  return d != 0.0f ? (plane - o) * inverse : parallel;
+}
+
+// Where the line enters and leaves a box, around t at which it is inside.
+Span span_around(Line r, vec3 lo, float size, float t) {
+  float nx = meet_plane(r.o.x, r.d.x, r.inverse.x, r.d.x > 0.0f ? lo.x : lo.x + size, -far_away);
+  float ny = meet_plane(r.o.y, r.d.y, r.inverse.y, r.d.y > 0.0f ? lo.y : lo.y + size, -far_away);
+  float nz = meet_plane(r.o.z, r.d.z, r.inverse.z, r.d.z > 0.0f ? lo.z : lo.z + size, -far_away);
+  float fx = meet_plane(r.o.x, r.d.x, r.inverse.x, r.d.x > 0.0f ? lo.x + size : lo.x, far_away);
+  float fy = meet_plane(r.o.y, r.d.y, r.inverse.y, r.d.y > 0.0f ? lo.y + size : lo.y, far_away);
+  float fz = meet_plane(r.o.z, r.d.z, r.inverse.z, r.d.z > 0.0f ? lo.z + size : lo.z, far_away);
+  Span s;
+  s.enter_axis = nx >= ny && nx >= nz ? 0u : ny >= nz ? 1u : 2u;
+  s.leave_axis = fx <= fy && fx <= fz ? 0u : fy <= fz ? 1u : 2u;
+  s.enter = min(max(nx, max(ny, nz)), t);
+  s.leave = max(min(fx, min(fy, fz)), t);
+  return s;
+}
+
+uint place_on_side(float p, float lo, float per_subside) {
+  return uint(clamp(floor((p - lo) * per_subside), 0.0f, float(N - 1u)));
+}
+
+uint subside(vec3 p, vec3 lo, float size, uint axis) {
+  float per_subside = float(N) / size;
+  uint u = place_on_side(axis == 0u ? p.y : p.x, axis == 0u ? lo.y : lo.x, per_subside);
+  uint v = place_on_side(axis == 2u ? p.y : p.z, axis == 2u ? lo.y : lo.z, per_subside);
+  return v * N + u;
+}
+
+uint shaft_index(uint side_a, uint subside_a, uint side_b, uint subside_b) {
+  bool ordered = side_a < side_b;
+  uint a = ordered ? side_a : side_b, b = ordered ? side_b : side_a;
+  uint from = ordered ? subside_a : subside_b, to = ordered ? subside_b : subside_a;
+  uint pair = a * (11u - a) / 2u + b - a - 1u;
+  return (pair * N * N + from) * N * N + to;
+}
+
+// LS(r, n): whether the line's shaft through the node is non-empty. The line is extended to the node's sides where the
+// segment begins or ends within.
+bool shaft_occupied(uint node, Line r, Span s, vec3 lo, float size) {
+  uint enter_side = 2u * s.enter_axis + (component(r.d, s.enter_axis) > 0.0f ? 0u : 1u);
+  uint leave_side = 2u * s.leave_axis + (component(r.d, s.leave_axis) > 0.0f ? 1u : 0u);
+  uint shaft = shaft_index(enter_side, subside(at(r, s.enter), lo, size, s.enter_axis), leave_side,
+                           subside(at(r, s.leave), lo, size, s.leave_axis));
+  uint words = (15u * N * N * N * N + 31u) / 32u;
+  return (line_space_word(node * words + (shaft >> 5u)) >> (shaft & 31u) & 1u) != 0u;
+}
+
+// Fine cells along a side of a node.
+float node_size(uint level) {
+  float n = float(N), s = level + 1u < DEPTH ? n : 1.0f;
+  s *= level + 2u < DEPTH ? n : 1.0f;
+  s *= level + 3u < DEPTH ? n : 1.0f;
+  s *= level + 4u < DEPTH ? n : 1.0f;
+  s *= level + 5u < DEPTH ? n : 1.0f;
+  return s;
+}
+
+// A coordinate of the node's lowest corner. Half a cell keeps the quotient away from integers.
+float node_corner(float cell, float size) { return floor((cell + 0.5f) / size) * size; }
+vec3 node_corner(vec3 cell, float size) {
+  return VEC3(node_corner(cell.x, size), node_corner(cell.y, size), node_corner(cell.z, size));
+}
+
+bool same(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+bool same_node(vec3 a, vec3 b, float size) { return same(node_corner(a, size), node_corner(b, size)); }
+
+bool within(float p, float hi) { return p >= 0.0f && p <= hi; }
+
+Walk begin_walk(vec3 o, vec3 d, float last) {
+  Walk w;
+  w.line = make_line(o, d);
+  float cells = node_size(0u);
+  bool starts_inside = o.x >= 0.0f && o.y >= 0.0f && o.z >= 0.0f && o.x < cells && o.y < cells && o.z < cells;
+  w.start = starts_inside ? VEC3(floor(o.x), floor(o.y), floor(o.z)) : VEC3(-1.0f, -1.0f, -1.0f);
+  Line r = w.line;
+  // With t far away in both directions nothing is taken for granted.
+  float enter = span_around(r, VEC3(0.0f, 0.0f, 0.0f), cells, far_away).enter;
+  float leave = span_around(r, VEC3(0.0f, 0.0f, 0.0f), cells, -far_away).leave;
+  bool beside = (r.d.x == 0.0f && !within(o.x, cells)) || (r.d.y == 0.0f && !within(o.y, cells)) ||
+                (r.d.z == 0.0f && !within(o.z, cells));
+  bool misses = beside || enter > leave || leave < 0.0f || enter > last;
+  w.t = max(enter, 0.0f);
+  w.last = last;
+  vec3 p = at(r, w.t);
+  w.cell = VEC3(clamp(floor(p.x), 0.0f, cells - 1.0f), clamp(floor(p.y), 0.0f, cells - 1.0f),
+                clamp(floor(p.z), 0.0f, cells - 1.0f));
+  w.level = 0u;
+  w.parent1 = w.parent2 = w.parent3 = w.parent4 = 0u;
+  w.blocked = false;
+  w.done = true;
+  if (misses) return w;
+  Span s = span_around(r, VEC3(0.0f, 0.0f, 0.0f), cells, w.t);
+  bool occupied = shaft_occupied(0u, r, s, VEC3(0.0f, 0.0f, 0.0f), cells);
+  w.blocked = occupied && DEPTH == 1u && !starts_inside;
+  w.done = !occupied || DEPTH == 1u;
+  return w;
+}
+
+uint parent(Walk w) {
+  return w.level == 0u   ? 0u
+         : w.level == 1u ? w.parent1
+         : w.level == 2u ? w.parent2
+         : w.level == 3u ? w.parent3
+                         : w.parent4;
+}
+
+float step_along(uint axis, uint leave_axis, float d, float p, float lo, float size) {
+  return axis == leave_axis ? (d > 0.0f ? lo + size : lo - 1.0f) : clamp(floor(p), lo, lo + size - 1.0f);
+}
+
+// Out of a box; up to the deepest node that the new cell is in as well.
+Walk leave_box(Walk w, Span s, vec3 lo, float size) {
+  w.t = s.leave;
+  vec3 p = at(w.line, w.t), old = w.cell;
+  w.cell = VEC3(step_along(0u, s.leave_axis, w.line.d.x, p.x, lo.x, size),
+                step_along(1u, s.leave_axis, w.line.d.y, p.y, lo.y, size),
+                step_along(2u, s.leave_axis, w.line.d.z, p.z, lo.z, size));
+  float now = component(w.cell, s.leave_axis);
+  w.done = now < 0.0f || now >= node_size(0u) || w.t > w.last;
+  uint level = 0u;
+  level = w.level >= 1u && same_node(old, w.cell, node_size(1u)) ? 1u : level;
+  level = w.level >= 2u && same_node(old, w.cell, node_size(2u)) ? 2u : level;
+  level = w.level >= 3u && same_node(old, w.cell, node_size(3u)) ? 3u : level;
+  level = w.level >= 4u && same_node(old, w.cell, node_size(4u)) ? 4u : level;
+  w.level = level;
+  return w;
+}
+
+// One subnode of the node at w.level: into it, or past it.
+Walk step_walk(Walk w) {
+  float size = node_size(w.level + 1u), above = node_size(w.level);
+  vec3 lo = node_corner(w.cell, size), from = node_corner(w.cell, above);
+  uint x = uint((lo.x - from.x) / size + 0.5f), y = uint((lo.y - from.y) / size + 0.5f),
+       z = uint((lo.z - from.z) / size + 0.5f);
+  uint node = tree_entry(parent(w) * N * N * N + (z * N + y) * N + x);
+  Span s = span_around(w.line, lo, size, w.t);
+  bool occupied = node < occupied_leaf;
+  if (occupied) occupied = shaft_occupied(node, w.line, s, lo, size);
+  bool finest = w.level + 2u == DEPTH;
+  if (occupied && finest && !same(w.cell, w.start)) {  // deep enough, and not the node where the segment starts
+    w.done = w.blocked = true;
+    return w;
+  }
+  if (!occupied || finest) return leave_box(w, s, lo, size);
+  w.level += 1u;
+  w.parent1 = w.level == 1u ? node : w.parent1;
+  w.parent2 = w.level == 2u ? node : w.parent2;
+  w.parent3 = w.level == 3u ? node : w.parent3;
+  w.parent4 = w.level == 4u ? node : w.parent4;
+  return w;
+}
