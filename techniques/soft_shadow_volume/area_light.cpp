@@ -13,6 +13,7 @@ Part part(const Light& light, int split, int column, int row) {
   Part p;
   p.light.center = with(center, length(u + v) / 2);
   p.light.scale_u = with(u * (2 / dot(u, u)), 0), p.light.scale_v = with(v * (2 / dot(v, v)), 0);
+  p.pivot = center + u * (0.5f * PIVOT_X) + v * (0.5f * PIVOT_Y);
   p.share = 1 / (n * n);
   return p;
 }
@@ -34,6 +35,8 @@ std::vector<Part> parts_of(const Light& light, int split) {
   }
   parts.resize(1);
   parts[0].light.center = with(light.center, light.radius);
+  parts[0].pivot = light.center;  // a point light's is where it is
+  if (light.kind == LightKind::sphere) parts[0].pivot += Vec3f{PIVOT_X, PIVOT_Y, PIVOT_X} * light.radius;
   return parts;
 }
 

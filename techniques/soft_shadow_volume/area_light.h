@@ -12,6 +12,7 @@ uint32_t shape_of(LightKind kind);
 
 struct Part {
   AreaLight light{};
+  Vec3f pivot;      // see shared.h
   float share = 1;  // of the whole light's area
 };
 

@@ -63,10 +63,10 @@ void Silhouettes::build(const Case& c, gpu::PassRecorder& passes) {
   passes.finish();  // the array that it copies from ends here
 }
 
-void Silhouettes::extract(const Case& c, const AreaLight& light, gpu::PassRecorder& passes) {
+void Silhouettes::extract(const Case& c, const Part& part, gpu::PassRecorder& passes) {
   const Camera& camera = c.frame->camera;
   ExtractPush p{};
-  p.light = light.center, p.light.w = near_reach(camera, c.width, c.height);
+  p.light = {part.pivot.x, part.pivot.y, part.pivot.z, near_reach(camera, c.width, c.height)};
   p.eye = {camera.eye.x, camera.eye.y, camera.eye.z, 1};
   p.positions = c.geometry->positions.address(), p.indices = c.geometry->indices.address();
   p.casts = casts_.address(), p.turned = turned_.address();

@@ -12,8 +12,8 @@ class Silhouettes {
   // Passes "adjacency", "casters" (host), "upload_adjacency". Throws PointError when the scene has no closed
   // meshes any more.
   void build(const Case& c, gpu::PassRecorder& passes);
-  // For the light's centre. Passes "turned", "silhouettes".
-  void extract(const Case& c, const AreaLight& light, gpu::PassRecorder& passes);
+  // As a part of the light sees them from its pivot. Passes "turned", "silhouettes".
+  void extract(const Case& c, const Part& part, gpu::PassRecorder& passes);
 
   uint32_t count() const { return count_; }          // of silhouette edges
   uint32_t near_caps() const { return near_caps_; }  // vertices of casters that the near plane may cut

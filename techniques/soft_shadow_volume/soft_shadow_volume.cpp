@@ -40,7 +40,7 @@ class SoftShadowVolume final : public Technique {
     wedges_.begin(in, passes);
     bool first = true;
     for (const Part& part : parts_of(in.scene_case->frame->light, params_.split)) {
-      silhouettes_.extract(*in.scene_case, part.light, passes);
+      silhouettes_.extract(*in.scene_case, part, passes);
       wedges_.run(in, silhouettes_, part, first, passes);
       first = false;
     }
@@ -52,7 +52,7 @@ class SoftShadowVolume final : public Technique {
     WedgeCounts sum;
     double edges = 0, near_caps = 0, eye = 0;
     for (const Part& part : parts_of(last_.scene_case->frame->light, params_.split)) {
-      silhouettes_.extract(*last_.scene_case, part.light, passes);
+      silhouettes_.extract(*last_.scene_case, part, passes);
       edges += silhouettes_.count(), near_caps += silhouettes_.near_caps() / 3;
       eye = std::max(eye, double(silhouettes_.eye_volumes()));
       const WedgeCounts c = wedges_.count(last_, silhouettes_, part, passes);

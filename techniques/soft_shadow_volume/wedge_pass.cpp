@@ -154,7 +154,8 @@ void WedgePass::draw_sides(gpu::Commands& commands, const RenderInput& in, const
   DrawPush p{};
   p.clip_from_world = to_float(
       in.scene_case->frame->camera.clip_from_world(in.view_samples->width(), in.view_samples->height()));
-  p.center = part.light.center, p.positions = in.scene_case->geometry->positions.address();
+  p.center = {part.pivot.x, part.pivot.y, part.pivot.z, 0};
+  p.positions = in.scene_case->geometry->positions.address();
   p.silhouettes = silhouettes.list().address(), p.caps = silhouettes.extraction().address();
   p.indices = in.scene_case->geometry->indices.address(), p.seen = in.view_samples->triangle().address();
   p.width = sums_.desc().width;
@@ -182,7 +183,8 @@ void WedgePass::draw_wedges(gpu::Commands& commands, const RenderInput& in, cons
   WedgePush p{};
   p.clip_from_world = to_float(
       in.scene_case->frame->camera.clip_from_world(in.view_samples->width(), in.view_samples->height()));
-  p.center = part.light.center, p.scale_u = part.light.scale_u, p.scale_v = part.light.scale_v;
+  p.pivot = {part.pivot.x, part.pivot.y, part.pivot.z, part.light.center.w}, p.scale_u = part.light.scale_u,
+  p.scale_v = part.light.scale_v;
   p.wedges = wedges_.address();
   const gpu::GraphicsPipeline& pipeline = counting ? counting_ : coverage_;
   if (silhouettes.count() > 0) {

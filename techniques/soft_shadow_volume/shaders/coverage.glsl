@@ -100,32 +100,47 @@ bool clip_to_rectangle(vec3 a, vec3 b, out vec2 from, out vec2 to) {
 
 // --- the disc ----------------------------------------------------------------------------------------------------
 
-// Where the horizon lies: the part of the disc with cos(angle - towards) r >= -offset is above it.
+// The angle of x to the x axis, -pi to pi; as Cephes' atanf, for atan() may be off by 1e-4 on some devices.
+float angle_of(vec2 x) {
+  const vec2 a = abs(x);
+  const float least = min(a.x, a.y), most = max(max(a.x, a.y), 1e-30), t = least / most;
+  const bool upper = t > 0.41421356;
+  const float r = upper ? (least - most) / (least + most) : t, z = r * r;
+  float angle =
+      (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) * z * r + r;
+  if (upper) angle += 0.25 * pi;
+  if (a.y > a.x) angle = 0.5 * pi - angle;
+  if (x.x < 0.0) angle = pi - angle;
+  return x.y < 0.0 ? -angle : angle;
+}
+
+// Where the horizon lies: the part of the disc with dot(x, towards) >= -offset is above it.
 struct DiscHorizon {
-  float towards, offset;
+  vec2 towards;
+  float offset, border;  // border: the angle to `towards` at which the horizon meets the circle
 };
 
 DiscHorizon disc_horizon(View v) {
   const float slope = length(v.horizon.xy);
   DiscHorizon h;
-  h.towards = slope > 0.0 ? atan(v.horizon.y, v.horizon.x) : 0.0;
+  h.towards = slope > 0.0 ? v.horizon.xy / slope : vec2(1, 0);
   h.offset = clamp(v.horizon.z / max(slope, 1e-30), -1.0, 1.0);
+  h.border = angle_of(vec2(-h.offset, sqrt((1.0 - h.offset) * (1.0 + h.offset))));
   return h;
 }
 
-// Area above the horizon that is swept from the direction `towards` by `angle`, -pi to pi.
-float swept_disc(DiscHorizon h, float angle) {
-  const float a = abs(angle), border = acos(-h.offset), o2 = h.offset * h.offset;
-  const float inner = min(a, border);
-  float area = 0.5 * inner;
-  if (h.offset < 0.0) area -= 0.5 * o2 * tan(inner);
-  if (h.offset > 0.0 && h.offset < 1.0 && a > border) area += 0.5 * o2 * (tan(a) - tan(border));
-  return angle < 0.0 ? -area : area;
-}
+vec2 turned(DiscHorizon h, vec2 x) { return vec2(dot(h.towards, x), h.towards.x * x.y - h.towards.y * x.x); }
 
-float disc_angle(DiscHorizon h, vec2 x) {
-  const float a = atan(x.y, x.x) - h.towards;
-  return a > pi ? a - 2.0 * pi : a < -pi ? a + 2.0 * pi : a;
+// Area above the horizon that is swept from `towards` to direction d, given relative to `towards`, of this angle.
+float swept_disc(DiscHorizon h, vec2 d, float angle) {
+  const float a = abs(angle), o = h.offset;
+  const bool within = a <= h.border;
+  // o^2 times the tangents of a and of the border.
+  const float o2_tan = o * o * abs(d.y) / (d.x != 0.0 ? d.x : 1e-30), o2_tan_border = -o * sqrt((1.0 - o) * (1.0 + o));
+  float area = 0.5 * (within ? a : h.border);
+  if (o < 0.0) area -= 0.5 * (within ? o2_tan : o2_tan_border);
+  if (o > 0.0 && o < 1.0 && !within) area += 0.5 * (o2_tan - o2_tan_border);
+  return angle < 0.0 ? -area : area;
 }
 
 // The slides: "solves the equation of an intersection with a cone and line in homogenous space".
@@ -159,6 +174,13 @@ bool clip_to_disc(vec3 a, vec3 b, out vec2 from, out vec2 to) {
 
 // --- both ----------------------------------------------------------------------------------------------------------
 
+// From the light's centre to its pivot.
+vec3 pivot_offset(AreaLight light, bool disc) {
+  if (disc) return light.center.w * vec3(PIVOT_X, PIVOT_Y, PIVOT_X);
+  return PIVOT_X * light.scale_u.xyz / dot(light.scale_u.xyz, light.scale_u.xyz) +
+         PIVOT_Y * light.scale_v.xyz / dot(light.scale_v.xyz, light.scale_v.xyz);
+}
+
 View view_of(vec3 p, vec3 normal, AreaLight light, bool disc) {
   View v;
   v.p = p;
@@ -191,7 +213,7 @@ vec3 project(View v, vec3 y) {
 
 // The light's area above the horizon, of 4 or pi.
 float area_above(View v, bool disc) {
-  if (disc) return 2.0 * swept_disc(disc_horizon(v), pi);
+  if (disc) return 2.0 * swept_disc(disc_horizon(v), vec2(-1, 0), pi);
   const vec4 q = quarters(v);
   return q.x + q.y + q.z + q.w;
 }
@@ -200,9 +222,10 @@ float area_above(View v, bool disc) {
 float sector_area(View v, vec2 a, vec2 b, bool left, bool disc) {
   if (disc) {
     const DiscHorizon h = disc_horizon(v);
-    const float from = disc_angle(h, a), to = disc_angle(h, b);
-    return swept_disc(h, to) - swept_disc(h, from) +
-           turns(from, to, 2.0 * pi, left) / (2.0 * pi) * 2.0 * swept_disc(h, pi);
+    const vec2 da = turned(h, a), db = turned(h, b);
+    const float from = angle_of(da), to = angle_of(db);
+    return swept_disc(h, db, to) - swept_disc(h, da, from) +
+           turns(from, to, 2.0 * pi, left) / pi * swept_disc(h, vec2(-1, 0), pi);
   }
   const vec4 q = quarters(v);
   const float from = border_place(a), to = border_place(b);

@@ -31,6 +31,12 @@ struct AreaLight {
   vec4 scale_v;
 };
 
+// Which side of an edge hides the light, and where the volumes' sides are, is decided for one point of the
+// light, its pivot: the centre moved by this much (of half the light's extent along x and y), so that it lies
+// in no common plane of edges and eye, as the centre does in symmetric scenes.
+#define PIVOT_X 1.1e-5f
+#define PIVOT_Y 0.7e-5f
+
 struct Silhouette {
   uint vertex[2];
   int weight;  // times that the edge runs vertex[0] -> vertex[1] around casters that turn their back to the
@@ -62,7 +68,7 @@ struct Extraction {
 };
 
 struct ExtractPush {
-  vec4 light;  // centre; w: distance from the eye up to which casters may be cut by the near plane
+  vec4 light;  // pivot; w: distance from the eye up to which casters may be cut by the near plane
   vec4 eye;    // w: unused
   ADDRESS_OF(Vec3Array) positions;
   ADDRESS_OF(UintArray) indices;
@@ -91,20 +97,19 @@ struct WedgesPush {
 // Sides of shadow volumes, near caps and wedges.
 struct DrawPush {
   mat4 clip_from_world;
-  vec4 center;  // as AreaLight
+  vec4 center;  // the light's pivot; w: see end
   ADDRESS_OF(Vec3Array) positions;
   ADDRESS_OF(SilhouetteArray) silhouettes;  // sides
   ADDRESS_OF(ExtractionRef) caps;           // near caps
   ADDRESS_OF(UintArray) indices;            // near caps: of the mesh
   ADDRESS_OF(UintArray) seen;               // near caps: triangle of each pixel
   uint width;
-  float end;  // sides: where they end, on the axis center.w (0, 1, 2); at infinity where that is -1
+  float end;  // sides: where they end, on axis center.w (0, 1, 2); at infinity where that is -1
 };
 struct WedgePush {
   mat4 clip_from_world;
-  vec4 center, scale_u, scale_v;  // as AreaLight; w of scale_u: columns, of scale_v: rows of the texture
+  vec4 pivot, scale_u, scale_v;  // as AreaLight, with the pivot for the centre
   ADDRESS_OF(WedgeArray) wedges;
-  ADDRESS_OF(FloatArray) rows;  // see texture.glsl
 };
 
 struct ResolvePush {
@@ -123,7 +128,7 @@ struct ResolvePush {
 #ifdef __cplusplus
 static_assert(sizeof(AreaLight) == 48 && sizeof(Silhouette) == 16 && sizeof(Wedge) == 192);
 static_assert(sizeof(ExtractPush) == 120 && sizeof(WedgesPush) == 120 && sizeof(DrawPush) == 128);
-static_assert(sizeof(WedgePush) == 128 && sizeof(ResolvePush) == 104);
+static_assert(sizeof(WedgePush) == 120 && sizeof(ResolvePush) == 104);
 }  // namespace penumbra::soft_shadow_volume
 #endif
 #endif

@@ -1,4 +1,4 @@
-// Casters that turn their back to the light's centre. Their boundary is the silhouette; they themselves are crossed by
+// Casters that turn their back to the light's pivot. Their boundary is the silhouette; they themselves are crossed by
 // a segment from P to the light once for each closed mesh that it passes through.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -23,7 +23,8 @@ const bool disc = SHAPE == SHAPE_DISC;
 void main() {
   const ivec2 pixel = ivec2(gl_FragCoord.xy);
   const vec3 p = texelFetch(position, pixel, 0).xyz, n = texelFetch(normal, pixel, 0).xyz;
-  const AreaLight light = AreaLight(push.center, push.scale_u, push.scale_v);
+  AreaLight light = AreaLight(push.pivot, push.scale_u, push.scale_v);
+  light.center.xyz -= pivot_offset(light, disc);
   const View v = view_of(p, n, light, disc);
   const vec3 a = project(v, edge_a.xyz), b = project(v, edge_b);
   vec2 from, to;
@@ -32,7 +33,7 @@ void main() {
     sum = vec2(1.0, meets ? 1.0 : 0.0);
     return;
   }
-  const bool left = side_of(p, edge_a.xyz, edge_b, push.center.xyz) >= 0.0;
+  const bool left = side_of(p, edge_a.xyz, edge_b, push.pivot.xyz) >= 0.0;
   float beyond = triangle_area(v, from, to) - sector_area(v, from, to, left, disc);
   if (TABLE && above_horizon(v)) beyond = triangle_area(v, from, to) - sector_by_table(from, to, left);
   sum = vec2(0.0, meets ? edge_a.w * beyond : 0.0);

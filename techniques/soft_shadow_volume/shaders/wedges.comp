@@ -1,8 +1,7 @@
 // The wedge of each silhouette edge: the points that it hides a part of the light from, which are the points
 // y + t (y - x), t >= 0, for y on the edge and x on the light. For a convex light that set is convex: it is the hull of
-// the two cones that start from the ends of the edge. A rectangle's cones have four edges; a sphere's is
-// circumscribed by four. The hull is given by its directions in turn (counter-clockwise seen from the far end), each
-// with the end that it starts from.
+// the two cones that start from the ends of the edge. A sphere is replaced by a rectangle that hides it. The hull is
+// given by its rays in turn (counter-clockwise seen from the far end), each with the end that it starts from.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define PENUMBRA_COMPUTE
@@ -25,26 +24,42 @@ vec3 across(vec3 unit) {
   return normalize(cross(unit, axis));
 }
 
-void add_rectangle(vec3 y) {
-  const vec3 u = wider * push.light.scale_u.xyz / dot(push.light.scale_u.xyz, push.light.scale_u.xyz);
-  const vec3 v = wider * push.light.scale_v.xyz / dot(push.light.scale_v.xyz, push.light.scale_v.xyz);
-  for (int i = 0; i < 4; ++i)
-    directions[count++] =
-        normalize(y - push.light.center.xyz - ((i & 1) != 0 ? u : -u) - ((i & 2) != 0 ? v : -v));
+// From both ends away from the corners of a rectangle about the light's centre: sides u and v times lo and hi. That
+// both use the same corners makes the hull's sides flat where they go from one end to the other.
+void add_rays(vec3 a, vec3 b, vec3 u, vec3 v, vec2 lo, vec2 hi) {
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 4; ++i)
+      directions[count++] = normalize((end == 0 ? a : b) - push.light.center.xyz - ((i & 1) != 0 ? hi.x : lo.x) * u -
+                                      ((i & 2) != 0 ? hi.y : lo.y) * v);
 }
 
-// A square pyramid about the cone of rays from the sphere through y, with two sides along the edge. False when y is in
-// the sphere.
-bool add_sphere(vec3 y, vec3 along) {
-  const vec3 from = y - push.light.center.xyz;
-  const float d2 = dot(from, from), r2 = push.light.center.w * push.light.center.w * wider * wider;
-  if (!(d2 > 1.01 * r2)) return false;
-  const vec3 axis = from * inversesqrt(d2), side = along - axis * dot(along, axis);
-  const vec3 u = dot(side, side) > 1e-8 * dot(along, along) ? normalize(side) : across(axis), v = cross(axis, u);
-  const float tangent = sqrt(r2 / (d2 - r2));
-  for (int i = 0; i < 4; ++i)
-    directions[count++] =
-        normalize(axis + tangent * ((i & 1) != 0 ? u : -u) + tangent * ((i & 2) != 0 ? v : -v));
+void add_rectangle(vec3 a, vec3 b) {
+  add_rays(a, b, push.light.scale_u.xyz / dot(push.light.scale_u.xyz, push.light.scale_u.xyz),
+           push.light.scale_v.xyz / dot(push.light.scale_v.xyz, push.light.scale_v.xyz), vec2(-wider), vec2(wider));
+}
+
+// Where the tangents from (x, y) to the circle of radius r about the origin meet the x axis. y > r.
+vec2 tangents(vec2 from, float r) {
+  const float r2 = r * r, d = from.y * from.y - r2, root = sqrt(r2 * r2 * from.x * from.x + d * r2 * dot(from, from));
+  return (vec2(-root, root) - r2 * from.x) / d;
+}
+
+// A rectangle that hides the sphere from both ends, across the mean direction to them. False where it would have no
+// bounds.
+bool add_sphere(vec3 a, vec3 b) {
+  const vec3 to_a = a - push.light.center.xyz, to_b = b - push.light.center.xyz, mean = normalize(to_a + to_b);
+  const float r = push.light.center.w * wider;
+  if (!(min(dot(to_a, mean), dot(to_b, mean)) > 1.01 * r)) return false;
+  const vec3 edge = b - a, side = edge - mean * dot(edge, mean);
+  const vec3 u = dot(side, side) > 1e-8 * dot(edge, edge) ? normalize(side) : across(mean), v = cross(mean, u);
+  vec2 lo, hi;
+  for (int k = 0; k < 2; ++k) {
+    const vec3 axis = k == 0 ? u : v;
+    const vec2 s = tangents(vec2(dot(to_a, axis), dot(to_a, mean)), r);
+    const vec2 t = tangents(vec2(dot(to_b, axis), dot(to_b, mean)), r);
+    lo[k] = min(s.x, t.x), hi[k] = max(s.y, t.y);
+  }
+  add_rays(a, b, u, v, lo, hi);
   return true;
 }
 
@@ -186,11 +201,9 @@ void main() {
     } else {
       bool outside = true;
       if (SHAPE == SHAPE_DISC) {
-        outside = add_sphere(a, b - a);
-        if (outside) outside = add_sphere(b, b - a);
+        outside = add_sphere(a, b);
       } else {
-        add_rectangle(a);
-        add_rectangle(b);
+        add_rectangle(a, b);
       }
       const vec3 mean = normalize(a - center + b - center);
       if (outside && narrow(mean, 8)) n = hull(mean, w);
