@@ -6,6 +6,7 @@
 #include "techniques/line_space/line_space.h"
 #include "techniques/planar_shadow/planar_shadow.h"
 #include "techniques/ray_tracing/ray_tracing.h"
+#include "techniques/sample_based_soft/sample_based_soft.h"
 #include "techniques/shadow_map/shadow_map.h"
 #include "techniques/shadow_map_per_sample/shadow_map_per_sample.h"
 #include "techniques/soft_shadow_volume/soft_shadow_volume.h"
@@ -22,6 +23,7 @@ Registry all_techniques() {
       planar_shadow_technique(),
       stencil_shadow_volume_technique(),
       alias_free_shadow_map_technique(),
+      sample_based_soft_technique(),
       soft_shadow_volume_technique(),
       gears_technique(),
       depth_complexity_sampling_technique(),

@@ -8,7 +8,7 @@
 namespace penumbra {
 
 bool TexelArray::ensure(gpu::Device& device, gpu::PassRecorder& passes, std::size_t count,
-                        const std::string& what) {
+                        const std::string& what, VkFormat format) {
   const std::size_t rows = count / texel_row + 1;
   if (image_ && image_.desc().height >= rows) return false;
   if (rows > device.caps().max_image_2d || texel_row > device.caps().max_image_2d)
@@ -18,7 +18,7 @@ bool TexelArray::ensure(gpu::Device& device, gpu::PassRecorder& passes, std::siz
   gpu::ImageDesc desc;
   desc.width = texel_row;
   desc.height = static_cast<uint32_t>(rows);
-  desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  desc.format = format;
   desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   image_ = gpu::Image(device, desc, what);
   passes.device_pass("initialise_images", [&](gpu::Commands& commands) { commands.initialise(image_); });

@@ -1,0 +1,168 @@
+#include "techniques/sample_based_soft/sample_based_soft.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+
+#include "techniques/common/mask_resolve.h"
+#include "techniques/sample_based_soft/soft_pass.h"
+
+namespace penumbra {
+namespace {
+
+using namespace sample_based_soft;
+
+class SampleBasedSoft final : public Technique {
+ public:
+  explicit SampleBasedSoft(const Params& params) { state_.params = params; }
+
+  std::optional<std::string> supports(const Case& c) const override {
+    const uint32_t lanes = std::min(c.device->caps().subgroup_size, 32u);
+    if (lanes < 4 || !std::has_single_bit(lanes))
+      return fmt::format("sample_based_soft needs subgroups of 4 lanes or more; this device has {}.", lanes);
+    if (c.light_samples->points.front().w == 0)
+      return "sample_based_soft sees the scene from the light's centre; a directional light has none.";
+    return std::nullopt;
+  }
+
+  void setup(const Case& c, gpu::PassRecorder& passes) override {
+    state_.set_light(c, passes);
+    set_up_ = {state_.light.layout, state_.light.ball};
+    casters_.setup(state_);
+    lists_.setup(state_);
+    coverage_.setup(state_, casters_);
+    soft_.setup(state_, casters_);
+    resolve_.setup(*c.device, state_.light.layout);
+  }
+
+  void build(const Case& c, gpu::PassRecorder& passes) override {
+    const Changes& changes = c.frame->changes;
+    if (!built_ || changes.topology || changes.light || changes.positions) state_.set_light(c, passes);
+    if (!set_up_ || *set_up_ != std::pair(state_.light.layout, state_.light.ball)) setup(c, passes);
+    if (!built_ || changes.topology) casters_.build_topology(state_, c.frame->geometry, passes);
+    if (!built_ || changes.topology || changes.light || changes.positions)
+      casters_.build_closed(state_, c, passes);
+    // In light space the table stays as it is while the light keeps its samples there.
+    if (!built_ || table_of_ != state_.light.samples) {
+      table_.build(state_, passes);
+      table_of_ = state_.light.samples;
+    }
+    built_ = true;
+    passes.finish();
+    casters_.bind(state_);
+    lists_.bind(state_);
+    coverage_.bind(state_, casters_);
+    soft_.bind(state_, casters_, table_);
+  }
+
+  void render(const RenderInput& in, gpu::PassRecorder& passes) override {
+    frame(in, passes, SoftPass::Statistics::none);
+    last_ = in;
+    passes_ = &passes;
+  }
+
+  Counters counters() override;
+
+  uint64_t structure_bytes() const override {
+    return state_.bytes() + casters_.bytes() + lists_.bytes() + coverage_.bytes() + soft_.bytes() +
+           table_.bytes();
+  }
+
+ private:
+  void frame(const RenderInput& in, gpu::PassRecorder& passes, SoftPass::Statistics statistics);
+  void add_list_counters(Counters& out) const;
+
+  FrameState state_;
+  Casters casters_;
+  SampleLists lists_;
+  Coverage coverage_;
+  SoftPass soft_;
+  PlaneTable table_;
+  MaskResolve resolve_;
+  std::optional<std::pair<MaskLayout, bool>> set_up_;  // what the pipelines are made for
+  std::vector<Vec4f> table_of_;
+  bool built_ = false;
+  RenderInput last_;
+  gpu::PassRecorder* passes_ = nullptr;
+};
+
+void SampleBasedSoft::frame(const RenderInput& in, gpu::PassRecorder& passes,
+                            SoftPass::Statistics statistics) {
+  state_.begin(in, passes);
+  lists_.run(state_, in, passes);
+  casters_.prepare(state_, *in.scene_case, passes);
+  passes.finish();
+  soft_.reset();
+  const uint32_t groups = lists_.group_count();
+  if (groups > 0) {
+    coverage_.count(state_, casters_, lists_, groups, passes);
+    for (const Chunk& chunk : coverage_.chunks()) {
+      coverage_.write(state_, casters_, lists_, chunk, passes);
+      soft_.run(state_, in, casters_, lists_, coverage_, chunk, statistics, passes);
+    }
+  }
+  if (!state_.walk_resolves())
+    resolve_.run(state_.masks_address(in), in.device.mask->address(), in.device.visibility->address(),
+                 state_.light.layout.weighted ? state_.weights.address() : 0, state_.pixels(), passes);
+}
+
+void SampleBasedSoft::add_list_counters(Counters& out) const {
+  std::vector<uint32_t> lengths(state_.lists());
+  gpu::download(*passes_, "read_counts", lists_.lengths(), lengths.data(), lengths.size() * 4);
+  passes_->finish();
+  double total = 0, occupied = 0, longest = 0;
+  for (const double n : lengths) total += n, occupied += n > 0, longest = std::max(longest, n);
+  const double all = double(state_.grid_size()) * state_.grid_size();
+  out["list_length_mean"] = occupied > 0 ? total / occupied : 0;
+  out["list_length_max"] = longest;
+  out["occupancy"] = (occupied - (lengths.back() > 0)) / all;
+  out["view_samples_listed"] = total;
+  out["view_samples_outside"] = double(lengths.back());
+  out["casters_per_list"] = occupied > 0 ? double(coverage_.total()) / occupied : 0;
+}
+
+// Renders the last frame again, with statistics, into the same output.
+Counters SampleBasedSoft::counters() {
+  Counters out;
+  if (!passes_) return out;
+  const double dispatches = soft_.dispatches(), hard = soft_.hard_groups();
+  frame(last_, *passes_, SoftPass::Statistics::nothing_skipped);
+  const Header all = state_.read_header(*passes_);
+  frame(last_, *passes_, SoftPass::Statistics::as_walked);
+  const Header h = state_.read_header(*passes_);
+  add_list_counters(out);
+  out["groups"] = double(lists_.group_count());
+  out["groups_outside_penumbrae"] = hard;
+  out["pairs_list_caster"] = double(coverage_.total());
+  out["casters_tested"] = wide(h.tests);
+  out["pairs_evaluated"] = wide(h.pairs);
+  out["pairs_necessary"] = wide(all.necessary);
+  out["triangles_casting"] = double(h.casters);
+  out["triangles_outside_blocks"] = double(h.list_count);
+  out["silhouette_edges"] = double(h.silhouettes);
+  out["chunks"] = double(coverage_.chunks().size());
+  out["walk_dispatches"] = dispatches;
+  out["table_bytes"] = state_.params.half_spaces == Params::HalfSpaces::table ? double(table_.bytes()) : 0.0;
+  return out;
+}
+
+}  // namespace
+
+TechniqueInfo sample_based_soft_technique() {
+  TechniqueInfo info;
+  info.name = "sample_based_soft";
+  info.title = "Sample based soft shadows with alias-free shadow maps";
+  info.sources = {"Sintorn2008, sec. 4"};
+  info.params = param_table().infos();
+  info.lights = {LightKind::point,  LightKind::spot,   LightKind::rectangle,
+                 LightKind::sphere, LightKind::volume, LightKind::textured_rectangle};
+  info.sampled = true;
+  info.make = [](const ParamValues& values) -> std::unique_ptr<Technique> {
+    return std::make_unique<SampleBasedSoft>(param_table().read(values));
+  };
+  return info;
+}
+
+}  // namespace penumbra
