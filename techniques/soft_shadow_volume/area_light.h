@@ -19,4 +19,12 @@ struct Part {
 // Parts of a rectangle row by row; one part of any other light.
 std::vector<Part> parts_of(const Light& light, int split);
 
+// The textures of all parts below each other, as shaders/texture.glsl reads them. Parts cut texels: each has
+// as many texels as the whole light. Lights that have none get one texel, which is not read.
+struct LightTexture {
+  uint32_t width = 1, height = 1;
+  std::vector<Vec4f> texels{{}};
+};
+LightTexture texture_of(const Light& light, int split);
+
 }  // namespace penumbra::soft_shadow_volume

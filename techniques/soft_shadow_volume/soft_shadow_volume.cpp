@@ -20,6 +20,8 @@ class SoftShadowVolume final : public Technique {
       return "Silhouettes are listed by prefix sums, which need subgroups of 4 lanes or more.";
     if (params_.split > 1 && c.frame->light.kind == LightKind::sphere)
       return "A sphere is seen as the disc that faces the view sample, which is not split.";
+    if (params_.coverage == Coverage::table && c.frame->light.kind == LightKind::textured_rectangle)
+      return "The tables hold areas of an even light: textures take coverage: analytic.";
     const Geometry& g = c.frame->geometry;
     if (g.closed) return {};
     const std::string refusal =
@@ -33,7 +35,10 @@ class SoftShadowVolume final : public Technique {
     wedges_.setup(*c.device, shape_of(c.frame->light.kind), passes);
   }
 
-  void build(const Case& c, gpu::PassRecorder& passes) override { silhouettes_.build(c, passes); }
+  void build(const Case& c, gpu::PassRecorder& passes) override {
+    silhouettes_.build(c, passes);
+    wedges_.set_light(*c.device, c.frame->light, passes);
+  }
 
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {
     last_ = in;
@@ -86,7 +91,7 @@ TechniqueInfo soft_shadow_volume_technique() {
   info.title = "Soft shadow volumes";
   info.sources = {"SoftShadowVolumes", "Assarsson2003"};
   info.params = param_table().infos();
-  info.lights = {LightKind::point, LightKind::rectangle, LightKind::sphere};
+  info.lights = {LightKind::point, LightKind::rectangle, LightKind::sphere, LightKind::textured_rectangle};
   info.sampled = false;
   info.residence = Residence::device;
   info.origin = [](const ParamValues&) { return Origin::exact; };

@@ -49,7 +49,7 @@ gpu::GraphicsPipeline wedge_pipeline(gpu::Device& device, uint32_t shape, bool t
   gpu::GraphicsDesc desc =
       adding(soft_shadow_volume_wedge_vert_spv, soft_shadow_volume_wedge_frag_spv, sizeof(WedgePush));
   desc.constants = {{0, shape}, {1, table ? 1U : 0U}, {2, counting ? 1U : 0U}};
-  desc.images.assign(4, gpu::ImageUse::sampled_nearest);
+  desc.images.assign(5, gpu::ImageUse::sampled_nearest);
   desc.depth_format = VK_FORMAT_D32_SFLOAT, desc.depth_test = desc.depth_clamp = true;
   desc.depth_compare = VK_COMPARE_OP_LESS_OR_EQUAL, desc.cull = VK_CULL_MODE_BACK_BIT;
   if (!counting) desc.write_mask = VK_COLOR_COMPONENT_G_BIT;
@@ -91,14 +91,36 @@ void WedgePass::setup(gpu::Device& device, uint32_t shape, gpu::PassRecorder& pa
   const bool table = params_.coverage == Coverage::table;
   tables_.make(device, passes, shape, table ? params_.table_size : 0);
   const gpu::Specialization of_shape[] = {{0, shape}};
+  const gpu::ImageUse texture[] = {gpu::ImageUse::sampled_nearest};
   wedge_pipeline_ = gpu::ComputePipeline(device, soft_shadow_volume_wedges_spv, sizeof(WedgesPush), of_shape);
   resolve_pipeline_ =
-      gpu::ComputePipeline(device, soft_shadow_volume_resolve_spv, sizeof(ResolvePush), of_shape);
+      gpu::ComputePipeline(device, soft_shadow_volume_resolve_spv, sizeof(ResolvePush), of_shape, texture);
   sides_ = volume_pipeline(device, soft_shadow_volume_side_vert_spv, soft_shadow_volume_side_frag_spv);
   near_caps_ =
       volume_pipeline(device, soft_shadow_volume_near_cap_vert_spv, soft_shadow_volume_near_cap_frag_spv);
   coverage_ = wedge_pipeline(device, shape, table, false);
   counting_ = wedge_pipeline(device, shape, false, true);
+}
+
+void WedgePass::set_light(gpu::Device& device, const Light& light, gpu::PassRecorder& passes) {
+  const LightTexture t = texture_of(light, params_.split);
+  const bool fits = texture_ && texture_.desc().width == t.width && texture_.desc().height == t.height;
+  if (!fits) {
+    gpu::ImageDesc desc;
+    desc.width = t.width, desc.height = t.height, desc.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+    desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    texture_ = gpu::Image(device, desc, "soft shadow volumes: light texture");
+    texels_ = gpu::Buffer(device, t.texels.size() * sizeof(Vec4f), gpu::Memory::device,
+                          "soft shadow volumes: light texture");
+    sums_ = {};  // descriptors are written with the images of a picture's size
+  }
+  gpu::upload(passes, "upload_texture", texels_, t.texels.data(), t.texels.size() * sizeof(Vec4f));
+  passes.device_pass("upload_texture", [&](gpu::Commands& commands) {
+    if (!fits) commands.initialise(texture_);
+    commands.barrier();
+    commands.copy_buffer_to_image(texels_, texture_, VK_IMAGE_ASPECT_COLOR_BIT);
+  });
+  passes.finish();  // the array that it copies from ends here
 }
 
 void WedgePass::begin(const RenderInput& in, gpu::PassRecorder& passes) {
@@ -113,7 +135,9 @@ void WedgePass::begin(const RenderInput& in, gpu::PassRecorder& passes) {
                   "soft shadow volumes: sums");
     sum_buffer_ = gpu::Buffer(*in.scene_case->device, std::size_t{pixels(in)} * sizeof(Vec2f),
                               gpu::Memory::device, "soft shadow volumes: sums");
-    const std::array views{position_.view(), normal_.view(), tables_.angles(), tables_.areas()};
+    const std::array views{position_.view(), normal_.view(), tables_.angles(), tables_.areas(),
+                           texture_.view()};
+    resolve_pipeline_.bind_images(std::span(views).last(1));
     coverage_.bind_images(views), counting_.bind_images(views);
     sides_.bind_images(std::span(views).first(1)), near_caps_.bind_images(std::span(views).first(1));
   }
@@ -244,7 +268,7 @@ WedgeCounts WedgePass::count(const RenderInput& in, const Silhouettes& silhouett
 
 uint64_t WedgePass::bytes() const {
   return tables_.bytes() + position_.bytes() + normal_.bytes() + sums_.bytes() + sum_buffer_.bytes() +
-         wedges_.bytes() + indices_.bytes();
+         texture_.bytes() + texels_.bytes() + wedges_.bytes() + indices_.bytes();
 }
 
 }  // namespace penumbra::soft_shadow_volume

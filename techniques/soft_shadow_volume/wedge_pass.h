@@ -20,6 +20,8 @@ class WedgePass {
  public:
   explicit WedgePass(const Params& params) : params_(params) {}
   void setup(gpu::Device& device, uint32_t shape, gpu::PassRecorder& passes);
+  // Once per light. Pass "upload_texture".
+  void set_light(gpu::Device& device, const Light& light, gpu::PassRecorder& passes);
   // Once per frame. Pass "view_copy".
   void begin(const RenderInput& in, gpu::PassRecorder& passes);
   // One part of the light. Passes "wedges", "hard_shadow", "coverage", "resolve".
@@ -45,7 +47,8 @@ class WedgePass {
   Tables tables_;
   gpu::ComputePipeline wedge_pipeline_, resolve_pipeline_;
   gpu::GraphicsPipeline sides_, near_caps_, coverage_, counting_;
-  gpu::Image position_, normal_, sums_;
+  gpu::Image position_, normal_, sums_, texture_;
+  gpu::Buffer texels_;
   gpu::Buffer sum_buffer_, wedges_, indices_;
 };
 

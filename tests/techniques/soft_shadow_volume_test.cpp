@@ -44,10 +44,35 @@ const Camera front = camera_at({0.4f, 2.6f, 3.4f}, {0, 0.3f, -0.2f});
 const Light rectangle = testing::rectangle_light({2.1f, 3.3f, 1.9f}, {0, 0.4f, 0}, 1.3f, 0.8f);
 const Light sphere = sphere_light({2.1f, 3.3f, 1.9f}, 0.6f);
 
+// An uneven light of 5 x 3 texels.
+Light textured(Light light) {
+  light.kind = LightKind::textured_rectangle, light.texture_width = 5, light.texture_height = 3;
+  light.weights = {1, 0, 2, 0.5f, 4, 0, 3, 0.25f, 1, 0, 2, 2, 0, 6, 1};
+  return light;
+}
+
+// Texel by texel.
+double textured_visibility(const Light& light, Vec3d p, Vec3d n, const std::vector<Polygon>& occluders) {
+  double seen = 0, sum = 0;
+  for (int row = 0; row < light.texture_height; ++row)
+    for (int column = 0; column < light.texture_width; ++column) {
+      const float w = static_cast<float>(light.texture_width), h = static_cast<float>(light.texture_height);
+      Light texel = light;
+      texel.kind = LightKind::rectangle, texel.edge_u = light.edge_u / w, texel.edge_v = light.edge_v / h;
+      texel.center = light.at((static_cast<float>(column) + 0.5f) / w, (static_cast<float>(row) + 0.5f) / h);
+      const double weight{light.weights[static_cast<std::size_t>(row * light.texture_width + column)]};
+      sum += weight;
+      if (weight > 0) seen += weight * testing::rectangle_visibility(texel, p, n, occluders);
+    }
+  return seen / sum;
+}
+
 // Visibility of the whole light, whatever its shape.
 double visibility(const Light& light, Vec3d p, Vec3d n, const std::vector<Polygon>& occluders) {
   return light.kind == LightKind::sphere
              ? testing::disc_visibility(Vec3d(light.center), double(light.radius), p, n, occluders)
+         : light.kind == LightKind::textured_rectangle
+             ? textured_visibility(light, p, n, occluders)
              : testing::rectangle_visibility(light, p, n, occluders);
 }
 
@@ -161,7 +186,7 @@ bool one_silhouette(const Light& light, const Box3& b) {
 }
 
 TEST(SoftShadowVolume, OneConvexOccluderIsExact) {
-  for (const Light& light : {rectangle, sphere}) {
+  for (const Light& light : {rectangle, sphere, textured(rectangle)}) {
     ASSERT_TRUE(one_silhouette(light, box));
     for (const char* wedges : {"tight", "loose"}) {
       const Agreement a = one_box(light, front, {{"wedges", wedges}});
@@ -172,7 +197,8 @@ TEST(SoftShadowVolume, OneConvexOccluderIsExact) {
 }
 
 TEST(SoftShadowVolume, SplitLightsAreExactToo) {
-  for (const int64_t split : {2, 3}) expect_exact(one_box(rectangle, front, {{"split", split}}));
+  for (const Light& light : {rectangle, textured(rectangle)})
+    for (const int64_t split : {2, 3}) expect_exact(one_box(light, front, {{"split", split}}));
 }
 
 void add_octahedron(Geometry& g, Vec3f center, float radius) {
@@ -192,6 +218,7 @@ void add_octahedron(Geometry& g, Vec3f center, float radius) {
 TEST(SoftShadowVolume, LightBelowTheHorizonCountsForNothing) {
   for (const float middle : {0.3f, 0.f, -0.2f})  // the last two: the light's centre itself gives no light
     for (Light light : {testing::rectangle_light({5, middle, 0.3f}, {0, 0.4f, 0}, 1.6f, 1.2f),
+                        textured(testing::rectangle_light({5, middle, 0.3f}, {0, 0.4f, 0}, 1.6f, 1.2f)),
                         sphere_light({5, middle, 0.3f}, 0.7f)}) {
       Frame f;
       testing::add_box(f.geometry, {-4, -1, -4}, {4, -1e-3f, 4});

@@ -28,7 +28,7 @@ CONSTANT SHAPE_TEXTURE = 3;
 struct AreaLight {
   vec4 center;   // and radius (sphere), or half the diagonal (rectangle)
   vec4 scale_u;  // rectangle: 2 edge_u / |edge_u|^2, so that it spans -1 to 1
-  vec4 scale_v;
+  vec4 scale_v;  // w of both: first row and number of rows of its texture
 };
 
 // Which side of an edge hides the light, and where the volumes' sides are, is decided for one point of the

@@ -12,6 +12,7 @@ layout(set = 0, binding = 0) uniform sampler2D position;
 layout(set = 0, binding = 1) uniform sampler2D normal;
 layout(set = 0, binding = 2) uniform sampler2D angles;
 layout(set = 0, binding = 3) uniform sampler2D areas;
+layout(set = 0, binding = 4) uniform sampler2D weights;
 layout(location = 0) flat in vec4 edge_a;
 layout(location = 1) flat in vec3 edge_b;
 layout(location = 0) out vec2 sum;
@@ -19,6 +20,7 @@ layout(location = 0) out vec2 sum;
 const bool disc = SHAPE == SHAPE_DISC;
 
 #include "techniques/soft_shadow_volume/shaders/table.glsl"
+#include "techniques/soft_shadow_volume/shaders/texture.glsl"
 
 void main() {
   const ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -34,7 +36,13 @@ void main() {
     return;
   }
   const bool left = side_of(p, edge_a.xyz, edge_b, push.pivot.xyz) >= 0.0;
-  float beyond = triangle_area(v, from, to) - sector_area(v, from, to, left, disc);
+  float beyond;
+  if (SHAPE == SHAPE_TEXTURE) {
+    first_row = int(push.scale_u.w), texture_rows = int(push.scale_v.w);
+    beyond = textured_beyond(v, from, to, left);
+  } else {
+    beyond = triangle_area(v, from, to) - sector_area(v, from, to, left, disc);
+  }
   if (TABLE && above_horizon(v)) beyond = triangle_area(v, from, to) - sector_by_table(from, to, left);
   sum = vec2(0.0, meets ? edge_a.w * beyond : 0.0);
 }
