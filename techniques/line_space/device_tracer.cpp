@@ -5,6 +5,7 @@
 
 #include "shaders/line_space_resolve.h"
 #include "shaders/line_space_trace.h"
+#include "shaders/line_space_trace_images.h"
 #include "techniques/common/light_emission.h"
 
 namespace penumbra::line_space {
@@ -20,9 +21,17 @@ uint32_t samples_per_dispatch(const Grid& grid) {
 }  // namespace
 
 void DeviceTracer::setup(gpu::Device& device, uint32_t branching, uint32_t depth) {
+  constexpr std::array images{gpu::ImageUse::sampled_nearest, gpu::ImageUse::sampled_nearest};
   const std::array<gpu::Specialization, 2> constants{{{0, branching}, {1, depth}}};
   trace_ = gpu::ComputePipeline(device, line_space_trace_spv, sizeof(TracePush), constants);
+  trace_images_ =
+      gpu::ComputePipeline(device, line_space_trace_images_spv, sizeof(TracePush), constants, images);
   resolve_ = gpu::ComputePipeline(device, line_space_resolve_spv, sizeof(ResolvePush));
+}
+
+void DeviceTracer::bind(const DeviceTree& tree) {
+  if (tree.has_images())
+    trace_images_.bind_images(std::array{tree.tree_image().view(), tree.line_space_image().view()});
 }
 
 void DeviceTracer::upload(const RenderInput& in, const Grid& grid, gpu::PassRecorder& passes) {
@@ -59,7 +68,8 @@ void DeviceTracer::run(const RenderInput& in, const Grid& grid, const DeviceTree
   for (uint32_t first = 0, step = samples_per_dispatch(grid); first < count; first += step) {
     push.first = first, push.end = std::min(first + step, count);
     passes.device_pass("trace", [&](gpu::Commands& commands) {
-      commands.dispatch(trace_, push, uint64_t{tiles(push.width)} * tiles(push.height));
+      commands.dispatch(tree.has_images() ? trace_images_ : trace_, push,
+                        uint64_t{tiles(push.width)} * tiles(push.height));
     });
   }
   ResolvePush resolve{};

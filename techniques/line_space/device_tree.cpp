@@ -18,13 +18,58 @@ gpu::Buffer words(gpu::Device& device, uint64_t count, const char* what) {
   return gpu::Buffer(device, std::max<uint64_t>(count, 1) * sizeof(uint32_t), on_device, what);
 }
 
+constexpr uint64_t row_bytes = uint64_t{word_row} * 4 * sizeof(uint32_t);
+
+uint64_t in_rows(uint64_t bytes) {
+  return std::max<uint64_t>(1, (bytes + row_bytes - 1) / row_bytes) * row_bytes;
+}
+
+// An image of all words of a buffer of whole rows.
+void copy_words(gpu::PassRecorder& passes, const gpu::Buffer& from, gpu::Image& to, const char* pass) {
+  gpu::ImageDesc desc;
+  desc.width = word_row, desc.height = static_cast<uint32_t>(from.bytes() / row_bytes);
+  desc.format = VK_FORMAT_R32G32B32A32_UINT;
+  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  if (!to || to.desc().height != desc.height) to = gpu::Image(passes.device(), desc, "line space: words");
+  passes.device_pass(pass, [&](gpu::Commands& commands) {
+    commands.initialise(to);
+    commands.barrier();
+    commands.copy_buffer_to_image(from, to, VK_IMAGE_ASPECT_COLOR_BIT);
+  });
+}
+
+// The shaft table with rows in whole texels, in whole rows of an image.
+std::vector<uint32_t> padded_rows(const ShaftTable& table) {
+  const uint32_t n = table.branching(), stride = (table.words() + 3) / 4 * 4, subnodes = n * n * n;
+  std::vector<uint32_t> rows(in_rows(uint64_t{stride} * subnodes * 4) / 4, 0);
+  for (uint32_t c = 0; c < subnodes; ++c)
+    std::copy_n(table.row(c), table.words(), rows.data() + std::size_t{c} * stride);
+  return rows;
+}
+
 }  // namespace
 
 void DeviceTree::allocate(gpu::Device& device, uint32_t branching, uint64_t nodes) {
   const PoolBytes bytes = pool_bytes(branching, nodes);
-  gpu::ensure(tree_, device, bytes.tree, on_device, "line space: tree pool");
+  gpu::ensure(tree_, device, in_rows(bytes.tree), on_device, "line space: tree pool");
   gpu::ensure(nodes_, device, bytes.nodes, on_device, "line space: node pool");
-  gpu::ensure(line_space_, device, bytes.line_space, on_device, "line space: line space pool");
+  gpu::ensure(line_space_, device, in_rows(bytes.line_space), on_device, "line space: line space pool");
+}
+
+void DeviceTree::copy_to_images(gpu::PassRecorder& passes) {
+  const gpu::Device& device = passes.device();
+  const uint64_t most = uint64_t{device.caps().max_image_2d} * row_bytes;
+  if (!device.info().software || tree_.bytes() > most || line_space_.bytes() > most) {
+    tree_image_ = {}, line_space_image_ = {};
+    return;
+  }
+  copy_words(passes, tree_, tree_image_, "copy_to_images");
+  copy_words(passes, line_space_, line_space_image_, "copy_to_images");
+}
+
+uint64_t DeviceTree::bytes() const {
+  return tree_.bytes() + nodes_.bytes() + line_space_.bytes() + (tree_image_ ? tree_image_.bytes() : 0) +
+         (line_space_image_ ? line_space_image_.bytes() : 0);
 }
 
 void DeviceTree::upload(const Pools& pools, gpu::PassRecorder& passes) {
@@ -37,6 +82,7 @@ void DeviceTree::upload(const Pools& pools, gpu::PassRecorder& passes) {
   gpu::upload(passes, "upload_tree", line_space_, pools.line_space.data(),
               pools.line_space.size() * sizeof(uint32_t));
   level_begin_ = pools.level_begin;
+  copy_to_images(passes);
   passes.finish();  // the arrays that it copies from may end
 }
 
@@ -49,7 +95,8 @@ void DeviceTree::setup(gpu::Device& device, uint32_t branching) {
   }
   const std::array<gpu::Specialization, 1> constants{{{0, branching}}};
   fill_ = gpu::ComputePipeline(device, line_space_fill_spv, sizeof(FillPush), constants);
-  shafts_ = gpu::ComputePipeline(device, line_space_line_space_spv, sizeof(LineSpacePush), constants);
+  shafts_ = gpu::ComputePipeline(device, line_space_line_space_spv, sizeof(LineSpacePush), constants,
+                                 std::array{gpu::ImageUse::sampled_nearest});
   scan_.setup(device, std::min(device.caps().subgroup_size, 32U));
 }
 
@@ -147,9 +194,14 @@ void DeviceTree::build(const GeometryOnDevice& geometry, const std::vector<uint3
 }
 
 void DeviceTree::fill(const std::vector<Level>& levels, const ShaftTable& table, gpu::PassRecorder& passes) {
-  const gpu::Buffer rows = words(passes.device(), table.rows().size(), "line space: shafts of subnodes");
-  gpu::upload(passes, "upload_shafts", rows, table.rows().data(), table.rows().size() * sizeof(uint32_t));
-  const uint64_t groups_per_node = groups_of(table.words());
+  const std::vector<uint32_t> padded = padded_rows(table);
+  const gpu::Buffer rows = words(passes.device(), padded.size(), "line space: shafts of subnodes");
+  gpu::Image row_image;
+  gpu::upload(passes, "upload_shafts", rows, padded.data(), padded.size() * sizeof(uint32_t));
+  copy_words(passes, rows, row_image, "upload_shafts");
+  passes.finish();
+  shafts_.bind_images(std::array{row_image.view()});
+  const uint64_t groups_per_node = groups_of((table.words() + 3) / 4);
   level_begin_.assign(1, 0);
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const Level& level = levels[l];
@@ -161,7 +213,7 @@ void DeviceTree::fill(const std::vector<Level>& levels, const ShaftTable& table,
     push.count = level.count, push.base = base, push.next_base = base + level.count;
     push.last_level = l + 1 == levels.size();
     LineSpacePush line{};
-    line.occupancy = level.occupancy.address(), line.rows = rows.address();
+    line.occupancy = level.occupancy.address();
     line.line_space_pool = line_space_.address();
     line.count = level.count, line.base = base;
     level_begin_.push_back(base + level.count);
@@ -172,6 +224,7 @@ void DeviceTree::fill(const std::vector<Level>& levels, const ShaftTable& table,
       commands.dispatch(shafts_, line, level.count * groups_per_node);
     });
   }
+  copy_to_images(passes);
   passes.finish();
 }
 

@@ -22,10 +22,14 @@ class DeviceTree {
   // For tests and counters.
   Pools download(const Grid& grid, gpu::PassRecorder& passes) const;
 
+  // Pools are read from images as well, where that is faster (see shaders/words.glsl) and they fit.
+  bool has_images() const { return static_cast<bool>(line_space_image_); }
+  const gpu::Image& tree_image() const { return tree_image_; }
+  const gpu::Image& line_space_image() const { return line_space_image_; }
   const gpu::Buffer& tree() const { return tree_; }
   const gpu::Buffer& line_space() const { return line_space_; }
   const std::vector<uint32_t>& level_begin() const { return level_begin_; }
-  uint64_t bytes() const { return tree_.bytes() + nodes_.bytes() + line_space_.bytes(); }
+  uint64_t bytes() const;
 
  private:
   struct Level {
@@ -38,12 +42,14 @@ class DeviceTree {
   // Sums of `counts`, and their total.
   uint64_t scan(const gpu::Buffer& counts, const gpu::Buffer& sums, uint32_t count,
                 gpu::PassRecorder& passes) const;
+  void copy_to_images(gpu::PassRecorder& passes);
   void fill(const std::vector<Level>& levels, const ShaftTable& table, gpu::PassRecorder& passes);
 
   uint32_t branching_ = 0;
   gpu::ComputePipeline occupy_[2], children_[2], fill_, shafts_;
   PrefixScan scan_;
   gpu::Buffer tree_, nodes_, line_space_;
+  gpu::Image tree_image_, line_space_image_;
   std::vector<uint32_t> level_begin_;
 };
 

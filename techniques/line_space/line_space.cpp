@@ -60,7 +60,7 @@ class LineSpace final : public Technique {
       if (!cpu()) device_tree_.upload(pools_, passes);
     }
     level_begin_ = device_build() ? device_tree_.level_begin() : pools_.level_begin;
-    if (!cpu()) pools_ = {};
+    if (!cpu()) pools_ = {}, tracer_.bind(device_tree_);
     built_ = true;
   }
 

@@ -23,6 +23,8 @@ SHARED_CONSTANT empty_leaf = 0xffffffffu;
 SHARED_CONSTANT group_lanes = 64u;
 SHARED_CONSTANT tile_side = 8u;  // a group's pixels are a square
 
+SHARED_CONSTANT word_row = 4096u;  // texels of four words in a row of shaders/words.glsl
+
 // An entry of the node pool.
 struct Node {
   uint children;  // place of its children group in the tree pool
@@ -71,7 +73,6 @@ struct FillPush {
 
 struct LineSpacePush {
   ADDRESS_OF(UintArray) occupancy;
-  ADDRESS_OF(UintArray) rows;  // of the shaft table
   ADDRESS_OF(UintArray) line_space_pool;
   uint count;  // nodes
   uint base;   // the level's first node
@@ -116,7 +117,7 @@ struct ResolvePush {
 
 #ifdef __cplusplus
 static_assert(sizeof(Node) == 16 && sizeof(OccupyPush) == 112 && sizeof(ChildrenPush) == 48);
-static_assert(sizeof(FillPush) == 56 && sizeof(LineSpacePush) == 32 && sizeof(TraceConstants) == 48);
+static_assert(sizeof(FillPush) == 56 && sizeof(LineSpacePush) == 24 && sizeof(TraceConstants) == 48);
 static_assert(sizeof(TracePush) == 96 && offsetof(TracePush, width) == 72 && sizeof(ResolvePush) == 40);
 }  // namespace penumbra::line_space
 #endif

@@ -1,13 +1,22 @@
 // One invocation follows the shadow segments of a pixel to up to 32 light samples, the bits of one word of its mask.
+// IMAGES: the pools are read from images, else by address.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "techniques/line_space/shaders/buffers.glsl"
 #include "techniques/common/shaders/light_emission.glsl"
+#include "techniques/line_space/shaders/words.glsl"
 layout(constant_id = 1) const uint DEPTH = 3;
 layout(push_constant, scalar) uniform Push { TracePush push; };
 
+#ifdef IMAGES
+layout(set = 0, binding = 0) uniform usampler2D tree_image;
+layout(set = 0, binding = 1) uniform usampler2D line_space_image;
+uint tree_entry(uint place) { return fetch_word(tree_image, place); }
+uint line_space_word(uint place) { return fetch_word(line_space_image, place); }
+#else
 uint tree_entry(uint place) { return push.tree_pool.at[place]; }
 uint line_space_word(uint place) { return push.line_space_pool.at[place]; }
+#endif
 #define VEC3 vec3
 #include "techniques/line_space/shaders/traverse.glsl"
 

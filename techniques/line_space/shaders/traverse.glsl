@@ -66,8 +66,7 @@ uint place_on_side(float p, float lo, float per_subside) {
   return uint(clamp(floor((p - lo) * per_subside), 0.0f, float(N - 1u)));
 }
 
-uint subside(vec3 p, vec3 lo, float size, uint axis) {
-  float per_subside = float(N) / size;
+uint subside(vec3 p, vec3 lo, float per_subside, uint axis) {
   uint u = place_on_side(axis == 0u ? p.y : p.x, axis == 0u ? lo.y : lo.x, per_subside);
   uint v = place_on_side(axis == 2u ? p.y : p.z, axis == 2u ? lo.y : lo.z, per_subside);
   return v * N + u;
@@ -83,33 +82,41 @@ uint shaft_index(uint side_a, uint subside_a, uint side_b, uint subside_b) {
 
 // LS(r, n): whether the line's shaft through the node is non-empty. The line is extended to the node's sides where the
 // segment begins or ends within.
-bool shaft_occupied(uint node, Line r, Span s, vec3 lo, float size) {
+bool shaft_occupied(uint node, Line r, Span s, vec3 lo, float per_subside) {
   uint enter_side = 2u * s.enter_axis + (component(r.d, s.enter_axis) > 0.0f ? 0u : 1u);
   uint leave_side = 2u * s.leave_axis + (component(r.d, s.leave_axis) > 0.0f ? 1u : 0u);
-  uint shaft = shaft_index(enter_side, subside(at(r, s.enter), lo, size, s.enter_axis), leave_side,
-                           subside(at(r, s.leave), lo, size, s.leave_axis));
+  uint shaft = shaft_index(enter_side, subside(at(r, s.enter), lo, per_subside, s.enter_axis), leave_side,
+                           subside(at(r, s.leave), lo, per_subside, s.leave_axis));
   uint words = (15u * N * N * N * N + 31u) / 32u;
   return (line_space_word(node * words + (shaft >> 5u)) >> (shaft & 31u) & 1u) != 0u;
 }
 
-// Fine cells along a side of a node.
+// Fine cells along a side of a node, and one over that. What DEPTH decides comes first, so that it costs nothing.
 float node_size(uint level) {
-  float n = float(N), s = level + 1u < DEPTH ? n : 1.0f;
-  s *= level + 2u < DEPTH ? n : 1.0f;
-  s *= level + 3u < DEPTH ? n : 1.0f;
-  s *= level + 4u < DEPTH ? n : 1.0f;
-  s *= level + 5u < DEPTH ? n : 1.0f;
+  float n = float(N), s = DEPTH > 1u && level + 1u < DEPTH ? n : 1.0f;
+  s *= DEPTH > 2u && level + 2u < DEPTH ? n : 1.0f;
+  s *= DEPTH > 3u && level + 3u < DEPTH ? n : 1.0f;
+  s *= DEPTH > 4u && level + 4u < DEPTH ? n : 1.0f;
+  s *= DEPTH > 5u && level + 5u < DEPTH ? n : 1.0f;
+  return s;
+}
+float node_share(uint level) {
+  float n = 1.0f / float(N), s = DEPTH > 1u && level + 1u < DEPTH ? n : 1.0f;
+  s *= DEPTH > 2u && level + 2u < DEPTH ? n : 1.0f;
+  s *= DEPTH > 3u && level + 3u < DEPTH ? n : 1.0f;
+  s *= DEPTH > 4u && level + 4u < DEPTH ? n : 1.0f;
+  s *= DEPTH > 5u && level + 5u < DEPTH ? n : 1.0f;
   return s;
 }
 
-// A coordinate of the node's lowest corner. Half a cell keeps the quotient away from integers.
-float node_corner(float cell, float size) { return floor((cell + 0.5f) / size) * size; }
-vec3 node_corner(vec3 cell, float size) {
-  return VEC3(node_corner(cell.x, size), node_corner(cell.y, size), node_corner(cell.z, size));
-}
+// Which node of such a size holds a cell, along one axis. Half a cell keeps the quotient away from integers.
+float node_place(float cell, float share) { return floor((cell + 0.5f) * share); }
 
 bool same(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-bool same_node(vec3 a, vec3 b, float size) { return same(node_corner(a, size), node_corner(b, size)); }
+bool same_node(float a, float b, uint level) {
+  float share = node_share(level);
+  return node_place(a, share) == node_place(b, share);
+}
 
 bool within(float p, float hi) { return p >= 0.0f && p <= hi; }
 
@@ -137,18 +144,17 @@ Walk begin_walk(vec3 o, vec3 d, float last) {
   w.done = true;
   if (misses) return w;
   Span s = span_around(r, VEC3(0.0f, 0.0f, 0.0f), cells, w.t);
-  bool occupied = shaft_occupied(0u, r, s, VEC3(0.0f, 0.0f, 0.0f), cells);
+  bool occupied = shaft_occupied(0u, r, s, VEC3(0.0f, 0.0f, 0.0f), float(N) * node_share(0u));
   w.blocked = occupied && DEPTH == 1u && !starts_inside;
   w.done = !occupied || DEPTH == 1u;
   return w;
 }
 
 uint parent(Walk w) {
-  return w.level == 0u   ? 0u
-         : w.level == 1u ? w.parent1
-         : w.level == 2u ? w.parent2
-         : w.level == 3u ? w.parent3
-                         : w.parent4;
+  uint node = DEPTH > 2u && w.level == 1u ? w.parent1 : 0u;
+  node = DEPTH > 3u && w.level == 2u ? w.parent2 : node;
+  node = DEPTH > 4u && w.level == 3u ? w.parent3 : node;
+  return DEPTH > 5u && w.level == 4u ? w.parent4 : node;
 }
 
 float step_along(uint axis, uint leave_axis, float d, float p, float lo, float size) {
@@ -164,25 +170,30 @@ Walk leave_box(Walk w, Span s, vec3 lo, float size) {
                 step_along(2u, s.leave_axis, w.line.d.z, p.z, lo.z, size));
   float now = component(w.cell, s.leave_axis);
   w.done = now < 0.0f || now >= node_size(0u) || w.t > w.last;
+  // Across the other axes it stays in the box, and so in the nodes around it.
+  float before = component(old, s.leave_axis);
   uint level = 0u;
-  level = w.level >= 1u && same_node(old, w.cell, node_size(1u)) ? 1u : level;
-  level = w.level >= 2u && same_node(old, w.cell, node_size(2u)) ? 2u : level;
-  level = w.level >= 3u && same_node(old, w.cell, node_size(3u)) ? 3u : level;
-  level = w.level >= 4u && same_node(old, w.cell, node_size(4u)) ? 4u : level;
+  level = DEPTH > 2u && w.level >= 1u && same_node(before, now, 1u) ? 1u : level;
+  level = DEPTH > 3u && w.level >= 2u && same_node(before, now, 2u) ? 2u : level;
+  level = DEPTH > 4u && w.level >= 3u && same_node(before, now, 3u) ? 3u : level;
+  level = DEPTH > 5u && w.level >= 4u && same_node(before, now, 4u) ? 4u : level;
   w.level = level;
   return w;
 }
 
 // One subnode of the node at w.level: into it, or past it.
 Walk step_walk(Walk w) {
-  float size = node_size(w.level + 1u), above = node_size(w.level);
-  vec3 lo = node_corner(w.cell, size), from = node_corner(w.cell, above);
-  uint x = uint((lo.x - from.x) / size + 0.5f), y = uint((lo.y - from.y) / size + 0.5f),
-       z = uint((lo.z - from.z) / size + 0.5f);
+  float size = node_size(w.level + 1u), share = node_share(w.level + 1u), above = node_share(w.level), n = float(N);
+  // Places among the nodes of its level, and among its parent's subnodes.
+  vec3 place = VEC3(node_place(w.cell.x, share), node_place(w.cell.y, share), node_place(w.cell.z, share));
+  vec3 lo = VEC3(place.x * size, place.y * size, place.z * size);
+  uint x = uint(place.x - node_place(w.cell.x, above) * n + 0.5f);
+  uint y = uint(place.y - node_place(w.cell.y, above) * n + 0.5f);
+  uint z = uint(place.z - node_place(w.cell.z, above) * n + 0.5f);
   uint node = tree_entry(parent(w) * N * N * N + (z * N + y) * N + x);
   Span s = span_around(w.line, lo, size, w.t);
   bool occupied = node < occupied_leaf;
-  if (occupied) occupied = shaft_occupied(node, w.line, s, lo, size);
+  if (occupied) occupied = shaft_occupied(node, w.line, s, lo, n * share);
   bool finest = w.level + 2u == DEPTH;
   if (occupied && finest && !same(w.cell, w.start)) {  // deep enough, and not the node where the segment starts
     w.done = w.blocked = true;
