@@ -3,6 +3,10 @@
 namespace penumbra::line_space {
 namespace {
 
+// Scene diagonals: a sixth of the offset from P to P'. What stands on a ground plane reaches below it by
+// rounding.
+constexpr float nearness = 1e-6F;
+
 float& axis_of(Vec3f& v, uint32_t axis) { return v[static_cast<int>(axis)]; }
 float axis_of(const Vec3f& v, uint32_t axis) { return v[static_cast<int>(axis)]; }
 
@@ -26,6 +30,7 @@ uint32_t faces_before_light(const Box& scene, const LightSamples& light) {
 }
 
 std::vector<uint32_t> select_casters(const Geometry& geometry, uint32_t faces) {
+  const float near = nearness * geometry.bounds.diagonal();
   std::vector<uint32_t> casters;
   casters.reserve(geometry.triangle_count());
   for (std::size_t t = 0; t < geometry.triangle_count(); ++t) {
@@ -34,7 +39,8 @@ std::vector<uint32_t> select_casters(const Geometry& geometry, uint32_t faces) {
       if ((faces >> f & 1) == 0) continue;
       const float plane = f % 2 ? axis_of(geometry.bounds.hi, f / 2) : axis_of(geometry.bounds.lo, f / 2);
       in_face = true;
-      for (int k = 0; k < 3; ++k) in_face = in_face && axis_of(geometry.corner(t, k), f / 2) == plane;
+      for (int k = 0; k < 3; ++k)
+        in_face = in_face && std::abs(axis_of(geometry.corner(t, k), f / 2) - plane) <= near;
     }
     if (!in_face) casters.push_back(static_cast<uint32_t>(t));
   }

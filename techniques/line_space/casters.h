@@ -14,7 +14,7 @@ namespace penumbra::line_space {
 // meets the face's plane in its first point at most.
 uint32_t faces_before_light(const Box& scene, const LightSamples& light);
 
-// Triangles that are in none of those faces.
+// Triangles that are in none of those faces, nor within rounding of one.
 std::vector<uint32_t> select_casters(const Geometry& geometry, uint32_t faces);
 
 // The root node, and how far rounding may displace anything: `slack`, in world units.

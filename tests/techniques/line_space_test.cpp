@@ -388,6 +388,10 @@ TEST(LineSpace, LeavesOutOnlyFacesThatCannotBlock) {
   EXPECT_EQ(faces_before_light(g.bounds, below) >> 2 & 3, 0U);
   EXPECT_EQ(select_casters(g, 1U << 2).size(), 12U);
   EXPECT_EQ(select_casters(g, 0).size(), 14U);
+  testing::add_box(g, {0.6f, -1e-7f, 0}, {0.8f, 0.3f, 0.2f});  // stands on the ground, but for rounding
+  EXPECT_EQ(select_casters(g, 1U << 2).size(), 22U) << "nor the box's own bottom";
+  testing::add_box(g, {0.6f, -1e-3f, 0.4f}, {0.8f, 0.3f, 0.6f});  // sticks in it
+  EXPECT_EQ(select_casters(g, 1U << 2).size(), 36U) << "the ground could block what is below it";
 }
 
 // --- pictures
