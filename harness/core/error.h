@@ -29,6 +29,12 @@ struct PointError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What supports() cannot foresee, because only the view samples show it: a technique cannot do this point after
+// all. It becomes `unsupported` with this message, a full sentence.
+struct UnsupportedError : PointError {
+  using PointError::PointError;
+};
+
 // The candidate nearest to `name` by edit distance, or empty when none is near enough to be a plausible slip.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates);
 

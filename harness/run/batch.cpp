@@ -160,13 +160,18 @@ std::optional<BatchRunner::Prepared> BatchRunner::try_prepare(const Point& point
       point, find_technique(registry_, point.technique), *view_, outputs_, passes_, heartbeat_, costs_,
       TimeLimits{settings_.measure.max_time_s, settings_.first_call_grace_s});
   prepared.record["params"]["light_size"] = short_double(prepared.run->lit().current.light.size());
-  if (const auto reason = prepared.run->unsupported()) {
+  std::optional<std::string> reason = prepared.run->unsupported();
+  try {
+    if (!reason) prepared.run->prepare();
+  } catch (const UnsupportedError& e) {
+    reason = e.what();
+  }
+  if (reason) {
     prepared.record["status"] = "unsupported";
     prepared.record["message"] = *reason;
     send_({{"event", "result"}, {"record", prepared.record}});
     return std::nullopt;
   }
-  prepared.run->prepare();
   judge(prepared);
   return prepared;
 }

@@ -19,11 +19,16 @@ Still render_still(const Point& point, const Registry& registry,
   Still still;
   still.width = point.width;
   still.height = point.height;
-  if (const auto reason = run.unsupported()) {
+  std::optional<std::string> reason = run.unsupported();
+  try {
+    if (!reason) run.prepare();
+  } catch (const UnsupportedError& e) {
+    reason = e.what();
+  }
+  if (reason) {
     still.unsupported = *reason;
     return still;
   }
-  run.prepare();
   const auto evaluated = evaluated_pixels(view.matched(run.lit(), point, run.origin()), run.output().claimed);
   finish_output(run.output(), evaluated, point.width);
   still.visibility = run.output().visibility;

@@ -21,6 +21,7 @@ enum class Fault {
   hang,
   throw_,
   unsupported,
+  late_unsupported,
   nan,
   forget,
   greedy,
@@ -40,8 +41,8 @@ const ParamTable<Params>& table() {
   static const ParamTable<Params> t = [] {
     ParamTable<Params> p;
     p.choice("fault", &Params::fault,
-             {"none", "abort", "segfault", "exit", "hang", "throw", "unsupported", "nan", "forget", "greedy",
-              "unrepeatable"},
+             {"none", "abort", "segfault", "exit", "hang", "throw", "unsupported", "late_unsupported",
+              "nan", "forget", "greedy", "unrepeatable"},
              {"", "", "what goes wrong"});
     p.choice("at", &Params::at, {"setup", "build", "render", "tenth_frame"}, {"", "", "when it goes wrong"});
     p.number("value", &Params::value, 0, 1, {"", "V", "visibility of every pixel"});
@@ -107,6 +108,8 @@ class Fake : public Technique {
         for (;;) ::pause();
       case Fault::throw_:
         throw PointError("the fake cannot finish this point.");
+      case Fault::late_unsupported:
+        throw UnsupportedError("The fake sees that it cannot do this case.");
       case Fault::greedy:
         for (;;) {
           hoard_.emplace_back(std::size_t{64} << 20, '\1');

@@ -130,11 +130,13 @@ TEST(Run, AnErrorWhileTimingFailsOnlyItsPoint) {
 TEST(Run, UnsupportedIsNoFailureAndHasAReason) {
   Sweep sweep;
   sweep.add({{"fault", std::string("unsupported")}}).add({});
+  sweep.add({{"fault", std::string("late_unsupported")}});
   sweep.plan.points[1].light = "sun";  // a kind of light that the fake does not list
   const RunOutcome o = sweep.run();
-  EXPECT_EQ(o.unsupported, 2U);
+  EXPECT_EQ(o.unsupported, 3U);
   EXPECT_EQ(o.failed, 0U);
   EXPECT_EQ(sweep.record("p0")["message"], "The fake does not do this case.");
+  EXPECT_EQ(sweep.record("p2")["message"], "The fake sees that it cannot do this case.");
   EXPECT_NE(sweep.record("p1")["message"].get<std::string>().find("directional"), std::string::npos);
 }
 

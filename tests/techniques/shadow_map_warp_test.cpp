@@ -257,5 +257,19 @@ TEST(ShadowMap, SaysWhatDoesNotCombine) {
             std::string::npos);
 }
 
+// A lamp low above the scene lies outside its bounds, which supports() asks for; only the view samples show that they
+// lie to all sides of it.
+TEST(ShadowMap, LightWithViewSamplesOnAllSidesTakesNeitherWarpNorCascades) {
+  Frame frame;
+  add_ground(frame.geometry, 6);
+  frame.light = point_light({0, 0.3f, 0});
+  frame.camera.eye = {0, 6, 4}, frame.camera.target = {0, 0, 0};
+  Stage stage(std::move(frame), 64, 48);
+  for (const ParamValues& v : {ParamValues{{"warp", "lispsm"}}, ParamValues{{"cascades", int64_t{3}}}}) {
+    EXPECT_EQ(stage.supports(v).value_or(""), "");
+    EXPECT_THROW(stage.render(v), UnsupportedError);
+  }
+}
+
 }  // namespace
 }  // namespace penumbra::test

@@ -66,9 +66,9 @@ const Fitted& Fitter::run(const Case& c, const LightPoint& light, const ViewSamp
   }
   if (may_need_faces(fitted_.light) && outside()) {
     if (params_.cascades > 1 || params_.warp != Warp::none)
-      throw PointError(
-          "shadow_map: the view samples lie so far around the light that it takes six faces, which take "
-          "neither cascades nor a warp");
+      throw UnsupportedError(
+          "The view samples lie so far around the light that it takes six faces, which take neither cascades "
+          "nor a warp.");
     passes.host_pass("fit", [&] { aim_faces(), query_layers(); });
     reduce_layers();
   }
