@@ -27,10 +27,28 @@ void put(uint list, uint at, uint a, uint b, uint c) {
   indices.at[at] = a, indices.at[at + 1] = b, indices.at[at + 2] = c;
 }
 
+bool before(uint a, uint b) {
+  const vec3 p = push.positions.at[a], q = push.positions.at[b];
+  return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+}
+
 // The side of a volume whose near cap, seen from the light, runs a -> b counter-clockwise: outwards, so b -> a.
+// Its triangles begin at the same end whichever way it runs: the two sides on an edge that two volumes share then are the
+// same triangles with their last two corners exchanged, so that rasterisers find the same fragments and depths in both.
 void put_side(uint at, uint a, uint b) {
   const uint n = push.vertex_count;
-  put(LIST_SIDES, at, b, a, a + n);
-  if (push.indices_per_quad >= 6) put(LIST_SIDES, at + 3, b, a + n, b + n);
+  const bool from_b = before(b, a);
+  if (push.indices_per_quad < 6) {
+    if (from_b) put(LIST_SIDES, at, b, a, b + n);
+    else put(LIST_SIDES, at, a, a + n, b);
+    return;
+  }
+  if (from_b) {
+    put(LIST_SIDES, at, b, a, a + n);
+    put(LIST_SIDES, at + 3, b, a + n, b + n);
+  } else {
+    put(LIST_SIDES, at, a, b + n, b);
+    put(LIST_SIDES, at + 3, a, a + n, b + n);
+  }
   if (push.indices_per_quad >= 9) put(LIST_SIDES, at + 6, 2 * n, b + n, a + n);
 }
