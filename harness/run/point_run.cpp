@@ -48,7 +48,10 @@ PointRun::PointRun(const Point& point, const TechniqueInfo& info, View& view, Ou
 PointRun::~PointRun() = default;
 
 ReferenceOrigin PointRun::origin() const {
-  return info_.origin(point_.params) == Origin::exact ? ReferenceOrigin::exact : ReferenceOrigin::offset;
+  const Origin declared = info_.origin(point_.params);
+  const bool exact =
+      declared == Origin::exact || (declared == Origin::automatic && lit_->current.geometry.closed);
+  return exact ? ReferenceOrigin::exact : ReferenceOrigin::offset;
 }
 
 std::optional<std::string> PointRun::unsupported() const {

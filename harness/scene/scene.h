@@ -26,6 +26,11 @@ struct Geometry {
   bool closed = false;  // every instance's mesh is closed and consistently wound (mirrored ones stay so)
   std::vector<uint8_t> instance_closed;  // the same, one by one
   std::size_t triangle_count() const { return indices.size() / 3; }
+  // The triangle belongs to an instance whose mesh is closed.
+  bool in_closed_mesh(std::size_t triangle) const {
+    const std::size_t instance = triangle_instance.empty() ? 0 : triangle_instance[triangle];
+    return instance < instance_closed.size() ? instance_closed[instance] != 0 : closed;
+  }
   Vec3f corner(std::size_t triangle, int i) const {
     return positions[indices[3 * triangle + static_cast<std::size_t>(i)]];
   }

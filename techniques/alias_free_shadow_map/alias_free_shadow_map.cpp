@@ -40,7 +40,8 @@ class AliasFreeShadowMap final : public Technique {
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {
     const LightView& view = fitter_.run(in, passes);
     const auto pixels = static_cast<uint32_t>(in.view_samples->width() * in.view_samples->height());
-    lists_.run(pixels, view, fitter_, passes);
+    casters_.cull(*in.scene_case, fitter_, passes);
+    lists_.run(pixels, view, fitter_, casters_.away(), casters_.progress(), passes);
     casters_.run(*in.scene_case, fitter_, lists_, passes);
     resolve(in, passes);
     last_ = in;
@@ -109,8 +110,7 @@ TechniqueInfo alias_free_shadow_map_technique() {
   info.sampled = false;
   info.residence = Residence::device;
   info.origin = [](const ParamValues& values) {
-    return param_table().read(values).origin == alias_free::SegmentOrigin::exact ? Origin::exact
-                                                                                 : Origin::offset;
+    return param_table().read(values).origin;
   };
   info.make = [](const ParamValues& values) {
     return std::make_unique<alias_free::AliasFreeShadowMap>(param_table().read(values));

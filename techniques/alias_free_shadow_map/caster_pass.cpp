@@ -12,12 +12,11 @@ namespace {
 
 // Triangles of one dispatch are so many that their items cannot exceed this, whatever they cover.
 constexpr uint32_t item_capacity = 1 << 21;
-// View samples of a row in one dispatch: loops take at most 2 turns for each and 2 for each 32; see
-// cast_items.comp.
-constexpr uint32_t item_turns = 16384;
+// View samples of a row in one dispatch: loops take a turn for each, and one for each 32; see cast_items.comp.
+constexpr uint32_t item_turns = 32768;
 constexpr uint32_t strips = 64;  // as cast_triangles.comp
 
-uint64_t culling_groups(uint32_t triangles) {
+uint64_t groups_of(uint32_t triangles) {
   constexpr uint32_t per_group = group_lanes * triangles_per_lane;
   return (uint64_t{triangles} + per_group - 1) / per_group;
 }
@@ -31,17 +30,15 @@ uint32_t CasterPass::items_per_triangle() const {
 void CasterPass::setup(const Case& c) {
   gpu::Device& device = *c.device;
   const bool parallel = at_infinity(c.frame->light);
-  for (uint32_t counting = 0; counting < 2; ++counting)
-    for (uint32_t inner = 0; inner < 2; ++inner) {
-      const gpu::Specialization constants[] = {{0, counting}, {1, item_turns}, {2, inner}, {3, parallel}};
-      Kernels& k = kernels_[inner][counting];
-      k.cull = gpu::ComputePipeline(device, alias_free_cull_triangles_spv, sizeof(CastPush), constants);
-      k.triangles = gpu::ComputePipeline(device, alias_free_cast_triangles_spv, sizeof(CastPush), constants);
-      k.items = gpu::ComputePipeline(device, alias_free_cast_items_spv, sizeof(CastPush), constants);
-      if (inner)
-        inner_[counting] =
-            gpu::ComputePipeline(device, alias_free_cast_inner_spv, sizeof(CastPush), constants);
-    }
+  for (uint32_t counting = 0; counting < 2; ++counting) {
+    const gpu::Specialization constants[] = {{0, counting}, {1, item_turns}, {3, parallel}};
+    const auto make = [&](const auto& code) {
+      return gpu::ComputePipeline(device, code, sizeof(CastPush), constants);
+    };
+    kernels_[counting] = {make(alias_free_cast_triangles_spv), make(alias_free_cast_items_spv),
+                          make(alias_free_cast_inner_spv)};
+    if (!counting) cull_ = make(alias_free_cull_triangles_spv);
+  }
   progress_ = gpu::Buffer(device, sizeof(Progress), gpu::Memory::device, "counts");
   progress_host_ = gpu::Buffer(device, sizeof(Progress), gpu::Memory::read_back, "counts");
 }
@@ -50,29 +47,37 @@ void CasterPass::build(const Case& c, gpu::PassRecorder& passes) {
   const Geometry& g = c.frame->geometry;
   triangle_count_ = static_cast<uint32_t>(g.triangle_count());
   std::vector<uint32_t> bits((g.triangle_count() + 31) / 32 + 1, 0U);
-  for (std::size_t t = 0; t < g.triangle_count(); ++t) {
-    const std::size_t instance = g.triangle_instance.empty() ? 0 : g.triangle_instance[t];
-    const bool closed = instance < g.instance_closed.size() ? g.instance_closed[instance] != 0 : g.closed;
-    if (closed) bits[t / 32] |= 1U << (t % 32);
-  }
+  for (std::size_t t = 0; t < g.triangle_count(); ++t)
+    if (g.in_closed_mesh(t)) bits[t / 32] |= 1U << (t % 32);
   gpu::ensure(closed_, *c.device, bits.size() * 4, gpu::Memory::device, "closed meshes' triangles");
   gpu::upload(passes, "upload_closed", closed_, bits.data(), bits.size() * 4);
   gpu::ensure(casters_, *c.device, std::max<uint64_t>(triangle_count_, 1) * 4, gpu::Memory::device,
               "triangles that cast");
+  const std::vector<uint32_t> none(std::max(triangle_count_, 1U), 0U);
+  gpu::ensure(away_, *c.device, none.size() * 4, gpu::Memory::device, "triangles turned away");
+  gpu::upload(passes, "upload_closed", away_, none.data(), none.size() * 4);
   const uint64_t items = std::min<uint64_t>(item_capacity, uint64_t{triangle_count_} * items_per_triangle());
   gpu::ensure(items_, *c.device, std::max<uint64_t>(items, 1) * 8, gpu::Memory::device,
               "items of large triangles");
 }
 
-CastPush CasterPass::push(const Case& c, const Fitter& fitter, const SampleLists& lists) const {
+void CasterPass::cull(const Case& c, const Fitter& fitter, gpu::PassRecorder& passes) {
+  CastPush pc = push(c, fitter);
+  pc.count = triangle_count_;
+  passes.device_pass("cull_triangles", [&](gpu::Commands& commands) {
+    commands.fill(progress_, 0);
+    commands.barrier();
+    if (pc.count > 0) commands.dispatch(cull_, pc, groups_of(pc.count));
+  });
+}
+
+CastPush CasterPass::push(const Case& c, const Fitter& fitter) const {
   CastPush pc{};
   pc.frame = fitter.view_buffer().address();
   pc.positions = c.geometry->positions.address();
   pc.indices = c.geometry->indices.address();
   pc.closed = closed_.address();
-  pc.offsets = lists.offsets().address();
-  pc.lists = lists.lists().address();
-  pc.blocked = lists.blocked().address();
+  pc.away = away_.address();
   pc.casters = casters_.address();
   pc.items = items_.address();
   pc.progress = progress_.address();
@@ -86,44 +91,42 @@ void CasterPass::run(const Case& c, const Fitter& fitter, const SampleLists& lis
 
 void CasterPass::cast(const Case& c, const Fitter& fitter, const SampleLists& lists, bool counting,
                       gpu::PassRecorder& passes) {
-  CastPush pc = push(c, fitter, lists);
-  bool any = false;
-  for (uint32_t f = 0; f < most_faces; ++f) any = any || fitter.used(f);
-  passes.device_pass("cast_begin", [&](gpu::Commands& commands) { commands.fill(progress_, 0); });
-  if (!any || triangle_count_ == 0) return;
-  cast_all(pc, fitter, false, counting, passes);
-  const uint32_t inner = read_progress().inner_count;
-  if (params_.casters == Casters::both || inner == 0) return;
-  if (inner > most_inner) return cast_all(pc, fitter, true, counting, passes);
-  pc.count = triangle_count_;
-  passes.device_pass("cast_inner", [&](gpu::Commands& commands) {
-    commands.dispatch(inner_[counting], pc, culling_groups(pc.count));
-  });
-}
-
-void CasterPass::cast_all(CastPush pc, const Fitter& fitter, bool inner, bool counting,
-                          gpu::PassRecorder& passes) {
-  pc.count = triangle_count_;
-  passes.device_pass("cull_triangles", [&](gpu::Commands& commands) {
-    commands.fill(progress_, 0, offsetof(Progress, caster_count), 4);
-    commands.barrier();
-    commands.dispatch(kernels_[inner][counting].cull, pc, culling_groups(pc.count));
+  CastPush pc = push(c, fitter);
+  pc.offsets = lists.offsets().address();
+  pc.lists = lists.lists().address();
+  pc.blocked = lists.blocked().address();
+  passes.device_pass("cast_begin", [&](gpu::Commands& commands) {
+    commands.fill(progress_, 0, 0, offsetof(Progress, inner_count));
     commands.barrier();
     commands.copy(progress_, progress_host_, sizeof(Progress));
   });
   passes.finish();
-  const uint32_t casters = read_progress().caster_count;
+  const Progress found = read_progress();
+  const Kernels& kernels = kernels_[counting];
+  cast_all(pc, 0, found.caster_count, fitter, kernels, passes);
+  if (found.inner_count == 0 || found.front_count == 0) return;
+  const uint32_t fronts = triangle_count_ - found.front_count;
+  if (found.inner_count > most_inner)
+    return cast_all(pc, fronts, found.front_count, fitter, kernels, passes);
+  pc.first = fronts, pc.count = found.front_count;
+  passes.device_pass("cast_inner", [&](gpu::Commands& commands) {
+    commands.dispatch(kernels.inner, pc, groups_of(pc.count));
+  });
+}
+
+// `count` entries of the list of casters from `first` on.
+void CasterPass::cast_all(CastPush pc, uint32_t first, uint32_t count, const Fitter& fitter,
+                          const Kernels& kernels, gpu::PassRecorder& passes) {
   const uint32_t chunk = std::max(item_capacity / items_per_triangle(), 1U);
   for (pc.face = 0; pc.face < most_faces; ++pc.face)
-    for (pc.first = 0; fitter.used(pc.face) && pc.first < casters; pc.first += chunk) {
-      pc.count = std::min(chunk, casters - pc.first);
-      cast_chunk(pc, inner, counting, passes);
+    for (uint32_t done = 0; fitter.used(pc.face) && done < count; done += chunk) {
+      pc.first = first + done, pc.count = std::min(chunk, count - done);
+      cast_chunk(pc, kernels, passes);
     }
 }
 
-void CasterPass::cast_chunk(CastPush pc, bool inner, bool counting, gpu::PassRecorder& passes) {
-  const Kernels& kernels = kernels_[inner][counting];
-  pc.groups = (pc.count + group_lanes - 1) / group_lanes;
+void CasterPass::cast_chunk(CastPush pc, const Kernels& kernels, gpu::PassRecorder& passes) {
+  pc.groups = static_cast<uint32_t>(groups_of(pc.count));
   const uint64_t dispatched = (uint64_t{pc.groups} + strips - 1) / strips * strips;
   passes.device_pass("cast_triangles", [&](gpu::Commands& commands) {
     commands.fill(progress_, 0, 0, offsetof(Progress, pairs));
@@ -158,7 +161,7 @@ double CasterPass::count_pairs(const Case& c, const Fitter& fitter, const Sample
 }
 
 uint64_t CasterPass::bytes() const {
-  return closed_.bytes() + casters_.bytes() + items_.bytes() + progress_.bytes() + progress_host_.bytes();
+  return closed_.bytes() + away_.bytes() + casters_.bytes() + items_.bytes() + progress_.bytes() + progress_host_.bytes();
 }
 
 }  // namespace penumbra::alias_free

@@ -6,12 +6,18 @@ namespace penumbra::alias_free {
 namespace {
 
 constexpr float no_limit = 3e38F;
+
+bool begins_exactly(const Params& params, const Case& c) {
+  return params.origin == Origin::exact ||
+         (params.origin == Origin::automatic && c.frame->geometry.closed);
+}
+
 }  // namespace
 
 void Fitter::setup(const Case& c) {
   gpu::Device& device = *c.device;
-  const uint32_t parallel = at_infinity(c.frame->light), offset = params_.origin == SegmentOrigin::offset;
-  const gpu::Specialization gather[] = {{0, 1}, {3, parallel}, {4, offset}},
+  const uint32_t parallel = at_infinity(c.frame->light);
+  const gpu::Specialization gather[] = {{0, 1}, {3, parallel}, {4, !begins_exactly(params_, c)}},
                             bound[] = {{0, 0}, {3, parallel}};
   gather_ = gpu::ComputePipeline(device, alias_free_bounds_spv, sizeof(BoundsPush), gather);
   bound_ = gpu::ComputePipeline(device, alias_free_bounds_spv, sizeof(BoundsPush), bound);
@@ -50,7 +56,8 @@ void Fitter::fit_samples(const RenderInput& in, gpu::PassRecorder& passes) {
     none = box.empty();
     for (int i = 0; i < 3 && !none; ++i)
       view_.sample_lo[i] = static_cast<float>(box.lo[i]), view_.sample_hi[i] = static_cast<float>(box.hi[i]);
-    aim(view_, light_, none ? Vec3d{} : 0.5 * (box.lo + box.hi), frame.camera.basis().forward);
+    aim(view_, light_, none ? Vec3d{} : 0.5 * (box.lo + box.hi) - Vec3d(view_.center.xyz()),
+        frame.camera.basis().forward);
     if (none) set_window(view_, 0, {{0, 0, 0}, {1, 1, 1}}, diagonal_);
   });
   if (none) return;
@@ -79,12 +86,11 @@ void Fitter::cover(uint32_t face, const Extent& extent) {
 void Fitter::fit_scene(const Case& c) {
   const Box& box = c.frame->geometry.bounds;
   // Offset origins may leave the bounds.
-  const double offset = params_.origin == SegmentOrigin::exact ? 0 : 2 * double(relative_offset) * diagonal_;
+  const double offset = begins_exactly(params_, c) ? 0 : 2 * double(relative_offset) * diagonal_;
   const Vec3d out{offset, offset, offset}, center(view_.center.xyz());
-  // Rounded as the device rounds q, so that planes of the scene's bounds stay exact.
   for (int i = 0; i < 3; ++i) {
-    view_.sample_lo[i] = box.lo[i] - static_cast<float>(offset) - view_.center[i];
-    view_.sample_hi[i] = box.hi[i] + static_cast<float>(offset) - view_.center[i];
+    view_.sample_lo[i] = box.lo[i] - static_cast<float>(offset);
+    view_.sample_hi[i] = box.hi[i] + static_cast<float>(offset);
   }
   const Vec3d lo = Vec3d(box.lo) - out - center, hi = Vec3d(box.hi) + out - center;
   aim(view_, light_, 0.5 * (lo + hi), c.frame->camera.basis().forward);
@@ -100,12 +106,12 @@ void Fitter::fit_scene(const Case& c) {
   }
 }
 
-// View samples relative to the light, packed, and the box of those that face it.
+// Where shadow segments begin, packed, and the box of those that face the light.
 void Fitter::gather(const RenderInput& in, gpu::PassRecorder& passes) {
   const ViewSamples& view = *in.view_samples;
   pixels_ = static_cast<uint32_t>(view.width() * view.height());
   gpu::ensure(samples_, passes.device(), std::size_t{pixels_} * sizeof(Vec4f), gpu::Memory::device,
-              "view samples relative to the light");
+              "shadow segments' beginnings");
   BoundsPush push{};
   push.position = view.position().address();
   push.origin = view.origin().address();

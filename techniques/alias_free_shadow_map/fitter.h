@@ -17,7 +17,8 @@ class Fitter {
   const LightView& run(const RenderInput& in, gpu::PassRecorder& passes);
   // Faces that some view sample is seen through.
   bool used(uint32_t face) const { return used_[face]; }
-  // Of the last run(), on the device: the view; and per pixel q, triangle to leave out, or not_listed.
+  // Of the last run(), on the device: the view; and per pixel where its shadow segment begins, and its own
+  // triangle or not_listed.
   const gpu::Buffer& view_buffer() const { return view_buffer_; }
   const gpu::Buffer& samples() const { return samples_; }
   uint64_t bytes() const {

@@ -29,7 +29,7 @@ void aim(LightView& view, const LightPoint& light, Vec3d towards, Vec3d hint);
 // Six: the sides of a cube.
 void aim_cube(LightView& view);
 
-// What the corners of a box (in q) cover of face 0; nothing when they do not all lie before the light within
+// What the corners of a box (relative to LightView::center) cover of face 0; nothing when they do not all lie before the light within
 // the limit.
 std::optional<Extent> extent_of(const LightView& view, Vec3d lo, Vec3d hi);
 

@@ -1,17 +1,17 @@
 // What alias_free_shadow_map can be told. Meaning, unit and range of each field stand in params.cpp, once.
 #pragma once
 #include "technique/params.h"
+#include "technique/technique.h"
 
 namespace penumbra::alias_free {
 
-enum class SegmentOrigin { exact, offset };
 enum class Casters { back, both };
 
 struct Params {
   int grid_size = 512;
   bool fit = true;
   Casters casters = Casters::back;
-  SegmentOrigin origin = SegmentOrigin::exact;
+  Origin origin = Origin::automatic;
 };
 
 const ParamTable<Params>& param_table();

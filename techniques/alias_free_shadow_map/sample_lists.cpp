@@ -29,13 +29,14 @@ void SampleLists::allocate(gpu::Device& device, uint32_t pixels) {
   ensure(blocked_, (std::size_t{pixels} + 31) / 32 * 4, "shadow bits");
 }
 
-void SampleLists::run(uint32_t pixels, const LightView& view, const Fitter& fitter,
-                      gpu::PassRecorder& passes) {
+void SampleLists::run(uint32_t pixels, const LightView& view, const Fitter& fitter, const gpu::Buffer& away,
+                      const gpu::Buffer& progress, gpu::PassRecorder& passes) {
   texels_ = view.face_count * view.grid_size * view.grid_size;
   allocate(passes.device(), pixels);
   BinPush push{};
   push.frame = fitter.view_buffer().address();
   push.samples = fitter.samples().address();
+  push.away = away.address(), push.progress = progress.address();
   push.lengths = lengths_.address();
   push.offsets = offsets_.address();
   push.texels = pixel_texels_.address();

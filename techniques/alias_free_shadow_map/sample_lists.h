@@ -12,13 +12,15 @@ class SampleLists {
  public:
   explicit SampleLists(const Params& params) : params_(params) {}
   void setup(const Case& c);
-  // Passes "count", "scan", "fill". All bits of blocked() are 0 afterwards.
-  void run(uint32_t pixels, const LightView& view, const Fitter& fitter, gpu::PassRecorder& passes);
+  // Passes "count", "scan", "fill". All bits of blocked() are 0 afterwards. `away`, `progress`: CasterPass's, which
+  // is told of view samples on the inside of closed meshes.
+  void run(uint32_t pixels, const LightView& view, const Fitter& fitter, const gpu::Buffer& away,
+           const gpu::Buffer& progress, gpu::PassRecorder& passes);
 
   const gpu::Buffer& lengths() const { return lengths_; }  // per texel, and one 0
   const gpu::Buffer& offsets() const { return offsets_; }  // per texel, and the end of the last
   const gpu::Buffer& slots() const { return slots_; }      // per pixel: place in the array, no_slot
-  const gpu::Buffer& lists() const { return lists_; }      // q, triangle to leave out
+  const gpu::Buffer& lists() const { return lists_; }      // as Fitter::samples()
   const gpu::Buffer& blocked() const { return blocked_; }  // a bit per place
   uint32_t texels() const { return texels_; }
   uint64_t bytes() const;

@@ -3,6 +3,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -60,6 +61,7 @@ class HardShadow {
     }
     EXPECT_GT(shadowed, 0.01 * evaluated);
     EXPECT_LE(double(off.size()), share * evaluated) << off.size() << " of " << evaluated;
+    std::printf("[measured] %zu of %.0f evaluated pixels off\n", off.size(), evaluated);
     const auto width = static_cast<std::size_t>(view().width);
     for (const std::size_t i : off)
       EXPECT_TRUE(flips(i, r.visibility[i] == 0, 1.0 / 64))

@@ -17,12 +17,13 @@ uint texel_of(vec3 q, const Face face, uint row, uint n) {
 // What is the same for all view samples is loaded once for several of them: loads are what this kernel costs.
 void count_samples(uint first) {
   const uint n = push.frame.f.grid_size;
+  const vec3 center = push.frame.f.center.xyz;
   const Face face = push.frame.f.faces[0];
   for (uint i = 0u; i < samples_per_lane; ++i) {
     const uint pixel = first + i * group_lanes;
     if (pixel >= push.count) break;
     const uvec4 s = push.samples.at[pixel];
-    const vec3 q = uintBitsToFloat(s.xyz);
+    const vec3 q = uintBitsToFloat(s.xyz) - center;
     uint texel = no_slot, place = no_slot;
     if (s.w != not_listed) {
       const uint index = CUBE ? cube_face(q) : 0u;
@@ -37,6 +38,14 @@ void count_samples(uint first) {
   }
 }
 
+// A view sample that faces the light, on a triangle of a closed mesh that does not, is seen from the mesh's inside:
+// through a silhouette's rounding, or by a camera within. There, light comes in through triangles that face it.
+void note_inner(uint slot, uint own) {
+  if (push.away.at[own] == 0u) return;
+  const uint place = atomicAdd(push.progress.p.inner_count, 1u);
+  if (place < most_inner) push.progress.p.inner[place] = slot;
+}
+
 void fill_lists(uint first) {
   for (uint i = 0u; i < samples_per_lane; ++i) {
     const uint pixel = first + i * group_lanes;
@@ -44,8 +53,10 @@ void fill_lists(uint first) {
     const uint texel = push.texels.at[pixel];
     if (texel != no_slot) {
       const uint slot = push.offsets.at[texel] + push.slots.at[pixel];
+      const uvec4 s = push.samples.at[pixel];
       push.slots.at[pixel] = slot;
-      push.lists.at[slot] = push.samples.at[pixel];
+      push.lists.at[slot] = s;
+      note_inner(slot, s.w);
     }
   }
 }

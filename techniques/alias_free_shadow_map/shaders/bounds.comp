@@ -1,26 +1,24 @@
-// Bounds of the view samples that face the light. GATHER: their box, relative to the light, while they are written as all
-// later kernels read them; else: what they cover of a face.
+// Bounds of the view samples that face the light. GATHER: their box, while they are written as all later kernels read them;
+// else: what they cover of a face.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "techniques/alias_free_shadow_map/shaders/buffers.glsl"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool GATHER = false;
-layout(constant_id = 4) const bool OFFSET = false;   // shadow segments begin at P', and no triangle is left out
+layout(constant_id = 4) const bool OFFSET = false;   // shadow segments begin at P', not at P
 layout(push_constant, scalar) uniform Push { BoundsPush push; };
 
 shared vec3 group_lo[group_lanes];
 shared vec3 group_hi[group_lanes];
 
-uvec4 gathered(uint pixel, vec4 light, vec4 emission, vec3 center) {
+// P' lies on the light's side of its own triangle, which cannot hide it: that may be left out at either origin.
+uvec4 gathered(uint pixel, vec4 light, vec4 emission) {
   const vec4 position = push.position.at[pixel];
   const bool listed = position.w > 0.0 && may_be_lit(position.xyz, push.normal.at[pixel].xyz, light, emission);
-  vec3 q = position.xyz - center;
-  uint own = no_own;
-  if (OFFSET)
-    q = push.origin.at[pixel].xyz - center;
-  else
-    own = push.triangle.at[pixel];
-  return uvec4(floatBitsToUint(q), listed ? own : not_listed);
+  const uint own = listed ? push.triangle.at[pixel] : not_listed;
+  vec3 from = position.xyz;
+  if (OFFSET) from = push.origin.at[pixel].xyz;
+  return uvec4(floatBitsToUint(from), own);
 }
 
 void main() {
@@ -38,15 +36,15 @@ void main() {
     if (pixel >= push.count) break;
     uvec4 s;
     if (GATHER) {
-      s = gathered(pixel, light, emission, center);
+      s = gathered(pixel, light, emission);
       push.samples.at[pixel] = s;
     } else {
       s = push.samples.at[pixel];
     }
-    const vec3 q = uintBitsToFloat(s.xyz);
     bool counts = s.w != not_listed;
-    vec3 p = q;
+    vec3 p = uintBitsToFloat(s.xyz);
     if (!GATHER) {
+      const vec3 q = p - center;
       p = project(face, q);
       counts = counts && (!cube || cube_face(q) == push.face);
       const bool inside = (PARALLEL || p.z > 0.0) && abs(p.x) <= push.limit && abs(p.y) <= push.limit;

@@ -6,7 +6,6 @@
 #include "techniques/alias_free_shadow_map/shaders/predicates.glsl"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool COUNTING = false;
-layout(constant_id = 2) const bool INNER = false;   // the second pass: triangles of closed meshes that face the light
 layout(push_constant, scalar) uniform Push { CastPush push; };
 
 // A caster in one face, and the conservative bounds of its texels.
@@ -15,41 +14,45 @@ struct Footprint {
   vec2 lo, hi;        // texels, continuous, not yet clamped to the face
 };
 
-// `entry`: 2 triangle + (of a closed mesh ? 1 : 0).
-Caster load_caster(uint entry) {
-  const uint t = entry >> 1u;
-  const vec3 center = push.frame.f.center.xyz;
-  const uint i = 3u * t;
-  const vec3 a = push.positions.at[push.indices.at[i]] - center, b = push.positions.at[push.indices.at[i + 1u]] - center,
-             c = push.positions.at[push.indices.at[i + 2u]] - center;
-  return make_caster(a, b, c, push.frame.f.light);
+// What is the same for all triangles: an invocation loads it once for several of them.
+struct View {
+  Face face;
+  vec3 center;
+  vec4 light;
+  uint grid_size;
+};
+View load_view() {
+  return View(push.frame.f.faces[push.face], push.frame.f.center.xyz, push.frame.f.light, push.frame.f.grid_size);
 }
 
-uint entry_of(uint t) { return 2u * t + (push.closed.at[t >> 5u] >> (t & 31u) & 1u); }
+Caster load_caster(uint t, vec4 light) {
+  const uint i = 3u * t;
+  return make_caster(push.positions.at[push.indices.at[i]], push.positions.at[push.indices.at[i + 1u]],
+                     push.positions.at[push.indices.at[i + 2u]], light);
+}
 
-bool casts(uint entry, const Caster caster) {
-  const bool closed = (entry & 1u) != 0u;
-  const bool front = caster.light_side > 0.0 && (INNER ? closed : !closed || push.frame.f.both_faces != 0u);
-  // Closed meshes' triangles that turn away must meet their own view samples, see test().
-  const bool meets_own = closed && !INNER;
-  return (front || (!INNER && caster.light_side < 0.0)) &&
-         !hides_nothing(caster, push.frame.f.sample_lo.xyz, push.frame.f.sample_hi.xyz, meets_own);
+// The plane through the light and the edge a-b, relative to View::center: positive where c of (a, b, c) is, when the
+// triangle turns away from the light.
+vec4 edge_plane(vec3 a, vec3 b, vec4 light) {
+  const vec3 along = b - a, ray = PARALLEL ? -light.xyz : a;
+  const vec3 n = cross(ray, along);
+  return vec4(n, PARALLEL ? -dot(n, a) : 0.0);
 }
 
 // Bounds in whole-face terms where a corner is not before the light: the edges alone then bound the rows' ranges.
-Footprint footprint(const Caster caster, const Face face) {
+Footprint footprint(const Caster caster, const View view) {
+  const Face face = view.face;
+  const vec3 corners[3] = vec3[](caster.a - view.center, caster.b - view.center, caster.c - view.center);
   Footprint f;
   const float inner = caster.light_side < 0.0 ? 1.0 : -1.0;
-  for (int k = 0; k < 3; ++k) {
-    const vec4 e = caster.edges[k] * inner;
-    const float error = 2e-6 * ((abs(e.x) + abs(e.y) + abs(e.z)) * face.slack.z + abs(e.w));
-    f.edges[k] = vec3(dot(e.xyz, face.right.xyz), dot(e.xyz, face.down.xyz),
-                      (PARALLEL ? e.w : dot(e.xyz, face.forward.xyz)) + error);
-  }
   f.lo = vec2(3e38), f.hi = vec2(-3e38);
   bool behind = false;
   for (int k = 0; k < 3; ++k) {
-    const vec3 q = k == 0 ? caster.a : k == 1 ? caster.b : caster.c;
+    const vec3 q = corners[k];
+    const vec4 e = edge_plane(q, corners[(k + 1) % 3], view.light) * inner;
+    const float error = 2e-6 * ((abs(e.x) + abs(e.y) + abs(e.z)) * face.slack.z + abs(e.w));
+    f.edges[k] = vec3(dot(e.xyz, face.right.xyz), dot(e.xyz, face.down.xyz),
+                      (PARALLEL ? e.w : dot(e.xyz, face.forward.xyz)) + error);
     const vec3 p = project(face, q);
     behind = behind || (!PARALLEL && !(p.z > 1e-6 * (abs(q.x) + abs(q.y) + abs(q.z))));
     const vec2 at = (p.xy - face.window.xy) * face.window.zw;
@@ -70,7 +73,9 @@ ivec2 rows_of(const Footprint f, int grid_size) {
 }
 
 // The view samples of the texels of row y that the triangle may touch: [x, y) of the array.
-uvec2 row_range(const Footprint f, const Face face, int y, uint grid_size) {
+uvec2 row_range(const Footprint f, const View view, int y) {
+  const Face face = view.face;
+  const uint grid_size = view.grid_size;
   const float v0 = face.window.y + (float(y) - face.slack.y) / face.window.w;
   const float v1 = face.window.y + (float(y + 1) + face.slack.y) / face.window.w;
   float u0 = -3e38, u1 = 3e38;
@@ -96,30 +101,14 @@ void set_blocked(uint slot, uint bits) {
   if (high != 0u) atomicOr(push.blocked.at[(slot >> 5u) + 1u], high);
 }
 
-// A view sample that faces the light on a triangle of a closed mesh that does not is seen from the mesh's inside:
-// through a silhouette's rounding, or by a camera within. There, light comes in through triangles that face it.
-void add_inner(uint slot, uint bits) {
-  do {
-    if (bits != 0u) {
-      const uint place = atomicAdd(push.progress.p.inner_count, 1u);
-      if (place < most_inner) push.progress.p.inner[place] = slot + uint(findLSB(bits));
-      bits &= bits - 1u;
-    }
-  } while (bits != 0u);
-}
-
 // At most 32 view samples from `slot` on. Bits are gathered first: atomics cost more than tests.
-void test(uint entry, const Caster caster, uint slot, uint count) {
-  const uint t = entry >> 1u;
-  uint hidden = 0u, inner = 0u;
+void test(uint t, const Caster caster, vec4 light, uint slot, uint count) {
+  uint hidden = 0u;
   for (uint i = 0u; i < count; ++i) {
     const uvec4 s = push.lists.at[slot + i];
-    const bool own = s.w == t;
-    hidden |= hides(caster, uintBitsToFloat(s.xyz)) && !own ? 1u << i : 0u;
-    inner |= own ? 1u << i : 0u;
+    hidden |= hides(caster, uintBitsToFloat(s.xyz), light) && s.w != t ? 1u << i : 0u;
   }
   set_blocked(slot, hidden);
-  if (!INNER && (entry & 1u) != 0u && caster.light_side < 0.0) add_inner(slot, inner);
 }
 
 void count_pairs(uint pairs) {

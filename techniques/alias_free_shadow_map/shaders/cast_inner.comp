@@ -5,17 +5,16 @@
 
 void main() {
   const uint count = min(push.progress.p.inner_count, most_inner);
+  const vec4 light = push.frame.f.light;
   const uint first = linear_group() * group_lanes * triangles_per_lane + gl_LocalInvocationIndex;
   uint pairs = 0u;
   for (uint i = 0u; i < triangles_per_lane; ++i) {
-    const uint t = first + i * group_lanes;
-    if (t >= push.count) break;
-    const uint entry = entry_of(t);
-    const Caster caster = load_caster(entry);
-    if (casts(entry, caster)) {
-      for (uint k = 0u; k < count; ++k) test(entry, caster, push.progress.p.inner[k], 1u);
-      pairs += count;
-    }
+    const uint index = first + i * group_lanes;
+    if (index >= push.count) break;
+    const uint t = push.casters.at[push.first + index];
+    const Caster caster = load_caster(t, light);
+    for (uint k = 0u; k < count; ++k) test(t, caster, light, push.progress.p.inner[k], 1u);
+    pairs += count;
   }
   count_pairs(pairs);
 }

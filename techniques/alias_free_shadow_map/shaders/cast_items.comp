@@ -15,15 +15,16 @@ void main() {
   const uint rows = item.y & 255u;
   const bool single = rows == 1u;
   if (!single && lane >= rows) return;
-  const Caster caster = load_caster(item.x);
-  const Face face = push.frame.f.faces[push.face];
-  const Footprint f = footprint(caster, face);
-  const uvec2 range = row_range(f, face, int((item.y >> 8u) + (single ? 0u : lane)), push.frame.f.grid_size);
+  const View view = load_view();
+  const Caster caster = load_caster(item.x, view.light);
+  const Footprint f = footprint(caster, view);
+  const uvec2 range = row_range(f, view, int((item.y >> 8u) + (single ? 0u : lane)));
   // Of one row: a contiguous part for each invocation.
   const uint part = single ? (range.y - range.x + item_rows - 1u) / item_rows : range.y - range.x;
   const uint begin = min(range.x + (single ? lane * part : 0u), range.y), length = min(part, range.y - begin);
   if (push.first == 0u && length > TURNS) atomicMax(push.progress.p.longest, length);
   const uint turns = length > push.first ? min(length - push.first, TURNS) : 0u;
-  for (uint i = 0u; i < turns; i += 32u) test(item.x, caster, begin + push.first + i, min(turns - i, 32u));
+  for (uint i = 0u; i < turns; i += 32u)
+    test(item.x, caster, view.light, begin + push.first + i, min(turns - i, 32u));
   count_pairs(turns);
 }

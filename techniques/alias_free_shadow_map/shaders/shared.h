@@ -20,15 +20,14 @@ using vec4 = Vec4f;
 SHARED_CONSTANT most_faces = 6u;
 SHARED_CONSTANT group_lanes = 64u;
 SHARED_CONSTANT samples_per_lane = 16u;   // of the bounds' reduction
-SHARED_CONSTANT triangles_per_lane = 8u;  // of the cull
+SHARED_CONSTANT triangles_per_lane = 8u;
 SHARED_CONSTANT small_rows =
     16u;  // triangles over at most so many rows of texels are done by one invocation,
 SHARED_CONSTANT small_range = 128u;  // as far as their rows hold at most so many view samples each
 SHARED_CONSTANT item_rows = 16u;     // all else becomes items of so many rows, done by as many invocations
-SHARED_CONSTANT most_inner = 64u;    // view samples on a closed mesh's inside that are tested one by one
+SHARED_CONSTANT most_inner = 256u;   // view samples on a closed mesh's inside that are tested one by one
 SHARED_CONSTANT no_slot = 0xffffffffu;
-SHARED_CONSTANT no_own = 0xfffffffeu;      // a view sample with no triangle to leave out
-SHARED_CONSTANT not_listed = 0xffffffffu;  // ... that faces away from the light
+SHARED_CONSTANT not_listed = 0xffffffffu;  // a view sample that faces away from the light
 
 // A window of the light's view, divided into grid_size x grid_size texels. With q relative to
 // LightView::center: u = dot(right, q) / depth, v = dot(down, q) / depth, depth = dot(forward, q), or 1 for a
@@ -43,7 +42,7 @@ struct LightView {
   vec4 light;     // position, 1; or the unit direction towards a light at infinity, 0
   vec4 emission;  // axis, cosine of the half angle about it in which light leaves (-1: everywhere)
   vec4 center;    // q = P - center: the light's position, or the middle of the scene for a light at infinity
-  vec4 sample_lo, sample_hi;  // box of the view samples' q
+  vec4 sample_lo, sample_hi;  // box of the shadow segments' beginnings
   Face faces[6];
   uint face_count;  // 1, or 6: the faces of a cube about the light
   uint grid_size;
@@ -63,9 +62,10 @@ struct Progress {
   uint longest;      // view samples of the longest row range among the items
   uint pairs[2];     // triangles tested against view samples (counting only): low, high word
   uint inner_count;  // view samples on the inside of closed meshes, and the places of the first
-  uint inner[64];
+  uint inner[256];
   uint caster_count;
-  uint unused[2];
+  uint front_count;  // triangles of closed meshes that face the light: they cast on inner view samples alone
+  uint unused;
 };
 
 struct BoundsPush {
@@ -84,7 +84,9 @@ struct BoundsPush {
 
 struct BinPush {
   ADDRESS_OF(FrameRef) frame;
-  ADDRESS_OF(UVec4Array) samples;  // per pixel: q, triangle to leave out (no_own: none; not_listed)
+  ADDRESS_OF(UVec4Array) samples;  // per pixel: where its shadow segment begins; its own triangle, or not_listed
+  ADDRESS_OF(UintArray) away;      // as CastPush
+  ADDRESS_OF(ProgressRef) progress;
   ADDRESS_OF(UintArray) lengths;   // per texel
   ADDRESS_OF(UintArray) offsets;   // per texel
   ADDRESS_OF(UintArray) texels;    // per pixel: its texel; no_slot: in no list
@@ -102,8 +104,9 @@ struct CastPush {
   ADDRESS_OF(UintArray) offsets;
   ADDRESS_OF(UVec4Array) lists;
   ADDRESS_OF(UintArray) blocked;  // a bit per view sample, in the order of the lists
-  ADDRESS_OF(UintArray) casters;  // 2 triangle + (of a closed mesh ? 1 : 0)
-  ADDRESS_OF(ItemArray) items;    // caster; first row, rows
+  ADDRESS_OF(UintArray) away;     // per triangle: 1 when it is of a closed mesh and turned away from the light
+  ADDRESS_OF(UintArray) casters;  // casters from the front, triangles of Progress::front_count from the back
+  ADDRESS_OF(ItemArray) items;    // triangle; first row, rows
   ADDRESS_OF(ProgressRef) progress;
   uint face;
   uint first;   // caster, or view sample of each range of an item
@@ -122,8 +125,8 @@ struct ResolvePush {
 #ifdef __cplusplus
 static_assert(sizeof(Face) == 80 && sizeof(LightView) == 80 + 6 * 80 + 16 &&
               offsetof(LightView, face_count) == 560);
-static_assert(sizeof(SampleBounds) == 32 && sizeof(Progress) == 16 + 68 * 4 && sizeof(BoundsPush) == 72);
-static_assert(sizeof(BinPush) == 64 && sizeof(CastPush) == 96 && sizeof(ResolvePush) == 32);
+static_assert(sizeof(SampleBounds) == 32 && sizeof(Progress) == 264 * 4 && sizeof(BoundsPush) == 72);
+static_assert(sizeof(BinPush) == 80 && sizeof(CastPush) == 104 && sizeof(ResolvePush) == 32);
 }  // namespace penumbra::alias_free
 #endif
 #undef SHARED_CONSTANT
