@@ -12,7 +12,7 @@ namespace {
 
 // Triangles of one dispatch are so many that their items cannot exceed this, whatever they cover.
 constexpr uint32_t item_capacity = 1 << 21;
-// View samples of a row in one dispatch: loops take a turn for each, and one for each 32; see cast_items.comp.
+// View samples of a row in one dispatch, a turn of a loop each; see cast_items.comp.
 constexpr uint32_t item_turns = 32768;
 constexpr uint32_t strips = 64;  // as cast_triangles.comp
 

@@ -26,7 +26,7 @@ void SampleLists::allocate(gpu::Device& device, uint32_t pixels) {
   ensure(pixel_texels_, std::size_t{pixels} * 4, "texels of the view samples");
   ensure(slots_, std::size_t{pixels} * 4, "places of the view samples");
   ensure(lists_, std::size_t{pixels} * sizeof(Vec4f), "lists of view samples");
-  ensure(blocked_, (std::size_t{pixels} + 31) / 32 * 4, "shadow bits");
+  ensure(blocked_, std::size_t{pixels} * 4, "who is in shadow");
 }
 
 void SampleLists::run(uint32_t pixels, const LightView& view, const Fitter& fitter, const gpu::Buffer& away,

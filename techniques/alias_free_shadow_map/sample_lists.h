@@ -12,7 +12,7 @@ class SampleLists {
  public:
   explicit SampleLists(const Params& params) : params_(params) {}
   void setup(const Case& c);
-  // Passes "count", "scan", "fill". All bits of blocked() are 0 afterwards. `away`, `progress`: CasterPass's, which
+  // Passes "count", "scan", "fill". All of blocked() is 0 afterwards. `away`, `progress`: CasterPass's, which
   // is told of view samples on the inside of closed meshes.
   void run(uint32_t pixels, const LightView& view, const Fitter& fitter, const gpu::Buffer& away,
            const gpu::Buffer& progress, gpu::PassRecorder& passes);
@@ -21,7 +21,7 @@ class SampleLists {
   const gpu::Buffer& offsets() const { return offsets_; }  // per texel, and the end of the last
   const gpu::Buffer& slots() const { return slots_; }      // per pixel: place in the array, no_slot
   const gpu::Buffer& lists() const { return lists_; }      // as Fitter::samples()
-  const gpu::Buffer& blocked() const { return blocked_; }  // a bit per place
+  const gpu::Buffer& blocked() const { return blocked_; }  // 1 per place in shadow, else 0
   uint32_t texels() const { return texels_; }
   uint64_t bytes() const;
   // Offsets, lengths and the arrays of the lists themselves.

@@ -170,8 +170,8 @@ TEST(AliasFreeShadowMap, CountsAreThoseOfTheLists) {
     EXPECT_NEAR(number(c, "list_length_mean") * number(c, "lists_occupied"), facing, 1e-6 * facing);
     EXPECT_DOUBLE_EQ(number(c, "occupancy") * double(grid * grid), number(c, "lists_occupied"));
     EXPECT_GE(number(c, "list_length_max"), number(c, "list_length_mean"));
-    // Coordinates, place and bit of each pixel; length and offset of each list.
-    EXPECT_NEAR(number(c, "list_bytes"), double(stage.pixels()) * 20.125 + double(grid * grid + 1) * 8, 64);
+    // Coordinates, place and result of each pixel; length and offset of each list.
+    EXPECT_NEAR(number(c, "list_bytes"), double(stage.pixels()) * 24 + double(grid * grid + 1) * 8, 64);
     EXPECT_GT(number(c, "pairs_tested"), facing);
   }
 }

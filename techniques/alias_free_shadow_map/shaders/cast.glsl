@@ -2,6 +2,7 @@
 //
 // Lists are laid out row by row in one dense array, so that the view samples of neighbouring texels of a row stand side
 // by side: a triangle's texels in a row are one range of the array, found by two loads, and empty texels cost nothing.
+#extension GL_EXT_control_flow_attributes : require
 #include "techniques/alias_free_shadow_map/shaders/buffers.glsl"
 #include "techniques/alias_free_shadow_map/shaders/predicates.glsl"
 layout(local_size_x = 64) in;
@@ -47,7 +48,7 @@ Footprint footprint(const Caster caster, const View view) {
   const float inner = caster.light_side < 0.0 ? 1.0 : -1.0;
   f.lo = vec2(3e38), f.hi = vec2(-3e38);
   bool behind = false;
-  for (int k = 0; k < 3; ++k) {
+  [[unroll]] for (int k = 0; k < 3; ++k) {
     const vec3 q = corners[k];
     const vec4 e = edge_plane(q, corners[(k + 1) % 3], view.light) * inner;
     const float error = 2e-6 * ((abs(e.x) + abs(e.y) + abs(e.z)) * face.slack.z + abs(e.w));
@@ -79,7 +80,7 @@ uvec2 row_range(const Footprint f, const View view, int y) {
   const float v0 = face.window.y + (float(y) - face.slack.y) / face.window.w;
   const float v1 = face.window.y + (float(y + 1) + face.slack.y) / face.window.w;
   float u0 = -3e38, u1 = 3e38;
-  for (int k = 0; k < 3; ++k) {
+  [[unroll]] for (int k = 0; k < 3; ++k) {
     const float slope = f.edges[k].x, rest = max(f.edges[k].y * v0, f.edges[k].y * v1) + f.edges[k].z;
     const float bound = -rest / slope;
     u0 = slope > 0.0 ? max(u0, bound) : u0;
@@ -94,21 +95,12 @@ uvec2 row_range(const Footprint f, const View view, int y) {
   return uvec2(push.offsets.at[row + uint(clamp(x0, 0.0, last))], push.offsets.at[row + uint(clamp(x1, 0.0, last)) + 1u]);
 }
 
-// Sets `bits` of the array of bits, bit 0 of which is that of `slot`.
-void set_blocked(uint slot, uint bits) {
-  const uint low = bits << (slot & 31u), high = (slot & 31u) == 0u ? 0u : bits >> (32u - (slot & 31u));
-  if (low != 0u) atomicOr(push.blocked.at[slot >> 5u], low);
-  if (high != 0u) atomicOr(push.blocked.at[(slot >> 5u) + 1u], high);
-}
-
-// At most 32 view samples from `slot` on. Bits are gathered first: atomics cost more than tests.
-void test(uint t, const Caster caster, vec4 light, uint slot, uint count) {
-  uint hidden = 0u;
-  for (uint i = 0u; i < count; ++i) {
-    const uvec4 s = push.lists.at[slot + i];
-    hidden |= hides(caster, uintBitsToFloat(s.xyz), light) && s.w != t ? 1u << i : 0u;
+// Whoever hides a view sample writes the same word: nothing is lost between them.
+void test(uint t, const Caster caster, vec4 light, uint begin, uint end) {
+  for (uint slot = begin; slot < end; ++slot) {
+    const uvec4 s = push.lists.at[slot];
+    if (hides(caster, uintBitsToFloat(s.xyz), light) && s.w != t) push.blocked.at[slot] = 1u;
   }
-  set_blocked(slot, hidden);
 }
 
 void count_pairs(uint pairs) {

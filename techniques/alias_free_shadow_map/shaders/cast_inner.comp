@@ -13,7 +13,10 @@ void main() {
     if (index >= push.count) break;
     const uint t = push.casters.at[push.first + index];
     const Caster caster = load_caster(t, light);
-    for (uint k = 0u; k < count; ++k) test(t, caster, light, push.progress.p.inner[k], 1u);
+    for (uint k = 0u; k < count; ++k) {
+      const uint slot = push.progress.p.inner[k];
+      test(t, caster, light, slot, slot + 1u);
+    }
     pairs += count;
   }
   count_pairs(pairs);

@@ -24,7 +24,6 @@ void main() {
   const uint begin = min(range.x + (single ? lane * part : 0u), range.y), length = min(part, range.y - begin);
   if (push.first == 0u && length > TURNS) atomicMax(push.progress.p.longest, length);
   const uint turns = length > push.first ? min(length - push.first, TURNS) : 0u;
-  for (uint i = 0u; i < turns; i += 32u)
-    test(item.x, caster, view.light, begin + push.first + i, min(turns - i, 32u));
+  test(item.x, caster, view.light, begin + push.first, begin + push.first + turns);
   count_pairs(turns);
 }

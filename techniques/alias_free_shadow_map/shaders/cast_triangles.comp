@@ -21,8 +21,7 @@ void cast_one(uint t, const View view) {
     if (range.y - range.x > small_range) {
       add_item(t, uint(y), 1u);
     } else {
-      for (uint slot = range.x; slot < range.y; slot += 32u)
-        test(t, caster, view.light, slot, min(range.y - slot, 32u));
+      test(t, caster, view.light, range.x, range.y);
       pairs += range.y - range.x;
     }
   }

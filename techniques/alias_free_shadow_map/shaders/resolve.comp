@@ -1,4 +1,4 @@
-// From bits in the order of the lists to visibility in the order of the pixels. View samples in no list face away from
+// From words in the order of the lists to visibility in the order of the pixels. View samples in no list face away from
 // the light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -11,6 +11,6 @@ void main() {
   if (pixel >= push.count) return;
   const uint slot = push.slots.at[pixel];
   float visibility = 0.0;
-  if (slot != no_slot) visibility = (push.blocked.at[slot >> 5u] >> (slot & 31u) & 1u) == 0u ? 1.0 : 0.0;
+  if (slot != no_slot) visibility = push.blocked.at[slot] == 0u ? 1.0 : 0.0;
   push.visibility.at[pixel] = visibility;
 }

@@ -103,7 +103,7 @@ struct CastPush {
   ADDRESS_OF(UintArray) closed;  // a bit per triangle
   ADDRESS_OF(UintArray) offsets;
   ADDRESS_OF(UVec4Array) lists;
-  ADDRESS_OF(UintArray) blocked;  // a bit per view sample, in the order of the lists
+  ADDRESS_OF(UintArray) blocked;  // 1 or 0 per view sample, in the order of the lists
   ADDRESS_OF(UintArray) away;     // per triangle: 1 when it is of a closed mesh and turned away from the light
   ADDRESS_OF(UintArray) casters;  // casters from the front, triangles of Progress::front_count from the back
   ADDRESS_OF(ItemArray) items;    // triangle; first row, rows
