@@ -29,8 +29,8 @@ struct PointError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What supports() cannot foresee, because only the view samples show it: a technique cannot do this point after
-// all. It becomes `unsupported` with this message, a full sentence.
+// What supports() cannot foresee, because only the view samples show it: a technique cannot do this point
+// after all. It becomes `unsupported` with this message, a full sentence.
 struct UnsupportedError : PointError {
   using PointError::PointError;
 };

@@ -19,8 +19,8 @@
 
 namespace penumbra {
 
-// Where shadow segments begin: P' = P + eps Ng, or P itself with its own triangle left out; automatic: `exact` where all
-// meshes of the scene are closed, else `offset`.
+// Where shadow segments begin: P' = P + eps Ng, or P itself with its own triangle left out; automatic:
+// `exact` where all meshes of the scene are closed, else `offset`.
 enum class Origin { offset, exact, automatic };
 // Where a technique wants its output: device buffers or host arrays.
 enum class Residence { host, device };

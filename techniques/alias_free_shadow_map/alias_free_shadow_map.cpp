@@ -109,9 +109,7 @@ TechniqueInfo alias_free_shadow_map_technique() {
                  LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
   info.sampled = false;
   info.residence = Residence::device;
-  info.origin = [](const ParamValues& values) {
-    return param_table().read(values).origin;
-  };
+  info.origin = [](const ParamValues& values) { return param_table().read(values).origin; };
   info.make = [](const ParamValues& values) {
     return std::make_unique<alias_free::AliasFreeShadowMap>(param_table().read(values));
   };

@@ -106,8 +106,7 @@ void CasterPass::cast(const Case& c, const Fitter& fitter, const SampleLists& li
   cast_all(pc, 0, found.caster_count, fitter, kernels, passes);
   if (found.inner_count == 0 || found.front_count == 0) return;
   const uint32_t fronts = triangle_count_ - found.front_count;
-  if (found.inner_count > most_inner)
-    return cast_all(pc, fronts, found.front_count, fitter, kernels, passes);
+  if (found.inner_count > most_inner) return cast_all(pc, fronts, found.front_count, fitter, kernels, passes);
   pc.first = fronts, pc.count = found.front_count;
   passes.device_pass("cast_inner", [&](gpu::Commands& commands) {
     commands.dispatch(kernels.inner, pc, groups_of(pc.count));
@@ -161,7 +160,8 @@ double CasterPass::count_pairs(const Case& c, const Fitter& fitter, const Sample
 }
 
 uint64_t CasterPass::bytes() const {
-  return closed_.bytes() + away_.bytes() + casters_.bytes() + items_.bytes() + progress_.bytes() + progress_host_.bytes();
+  return closed_.bytes() + away_.bytes() + casters_.bytes() + items_.bytes() + progress_.bytes() +
+         progress_host_.bytes();
 }
 
 }  // namespace penumbra::alias_free

@@ -20,7 +20,7 @@ class CasterPass {
   // The same again, counting the tests of a triangle against a view sample.
   double count_pairs(const Case& c, const Fitter& fitter, const SampleLists& lists,
                      gpu::PassRecorder& passes);
-  const gpu::Buffer& away() const { return away_; }          // as CastPush
+  const gpu::Buffer& away() const { return away_; }  // as CastPush
   const gpu::Buffer& progress() const { return progress_; }
   uint64_t bytes() const;
 

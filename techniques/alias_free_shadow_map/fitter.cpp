@@ -8,8 +8,7 @@ namespace {
 constexpr float no_limit = 3e38F;
 
 bool begins_exactly(const Params& params, const Case& c) {
-  return params.origin == Origin::exact ||
-         (params.origin == Origin::automatic && c.frame->geometry.closed);
+  return params.origin == Origin::exact || (params.origin == Origin::automatic && c.frame->geometry.closed);
 }
 
 }  // namespace

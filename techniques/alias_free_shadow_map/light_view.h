@@ -29,8 +29,8 @@ void aim(LightView& view, const LightPoint& light, Vec3d towards, Vec3d hint);
 // Six: the sides of a cube.
 void aim_cube(LightView& view);
 
-// What the corners of a box (relative to LightView::center) cover of face 0; nothing when they do not all lie before the light within
-// the limit.
+// What the corners of a box (relative to LightView::center) cover of face 0; nothing when they do not all lie
+// before the light within the limit.
 std::optional<Extent> extent_of(const LightView& view, Vec3d lo, Vec3d hi);
 
 // The window of a face: `extent`, padded by what rounding may add.

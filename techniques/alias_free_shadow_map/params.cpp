@@ -19,11 +19,12 @@ const ParamTable<Params>& param_table() {
         {"", "",
          "triangles of closed meshes that cast: those that turn away from the light, or all; those of open "
          "meshes always all"});
-    t.choice("origin", &Params::origin, {"offset", "exact", "auto"},
-             {"", "",
-              "where shadow segments begin: at the offset point that sampled techniques share; at the view "
-              "sample itself, its own triangle left out, without bias of any kind; auto: the latter where all "
-              "meshes of the scene are closed, else the former"});
+    t.choice(
+        "origin", &Params::origin, {"offset", "exact", "auto"},
+        {"", "",
+         "where shadow segments begin: at the offset point that sampled techniques share; at the view "
+         "sample itself, its own triangle left out, without bias of any kind; auto: the latter where all "
+         "meshes of the scene are closed, else the former"});
     return t;
   }();
   return table;

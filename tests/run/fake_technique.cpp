@@ -41,8 +41,8 @@ const ParamTable<Params>& table() {
   static const ParamTable<Params> t = [] {
     ParamTable<Params> p;
     p.choice("fault", &Params::fault,
-             {"none", "abort", "segfault", "exit", "hang", "throw", "unsupported", "late_unsupported",
-              "nan", "forget", "greedy", "unrepeatable"},
+             {"none", "abort", "segfault", "exit", "hang", "throw", "unsupported", "late_unsupported", "nan",
+              "forget", "greedy", "unrepeatable"},
              {"", "", "what goes wrong"});
     p.choice("at", &Params::at, {"setup", "build", "render", "tenth_frame"}, {"", "", "when it goes wrong"});
     p.number("value", &Params::value, 0, 1, {"", "V", "visibility of every pixel"});

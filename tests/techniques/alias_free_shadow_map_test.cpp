@@ -71,15 +71,12 @@ TEST_P(AliasFreeScene, DiffersFromEmbreeInTiesAlone) {
   stage.expect_exact(stage.render({{"origin", "exact"}, {"casters", "both"}}), ReferenceOrigin::exact);
 }
 
-INSTANTIATE_TEST_SUITE_P(At1024, AliasFreeScene,
-                         ::testing::Values(Place{"bunny", "lamp"}, Place{"bunny", "sun"},
-                                           Place{"torus_knot", "lamp"}, Place{"torus_knot", "sun"},
-                                           Place{"columns", "lamp"}, Place{"bird_nest", "lamp"},
-                                           Place{"bird_nest", "sun"}, Place{"dragon", "lamp"},
-                                           Place{"dragon", "sun"}),
-                         [](const auto& place) {
-                           return std::string(place.param.scene) + "_" + place.param.light;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    At1024, AliasFreeScene,
+    ::testing::Values(Place{"bunny", "lamp"}, Place{"bunny", "sun"}, Place{"torus_knot", "lamp"},
+                      Place{"torus_knot", "sun"}, Place{"columns", "lamp"}, Place{"bird_nest", "lamp"},
+                      Place{"bird_nest", "sun"}, Place{"dragon", "lamp"}, Place{"dragon", "sun"}),
+    [](const auto& place) { return std::string(place.param.scene) + "_" + place.param.light; });
 
 TEST(AliasFreeShadowMap, EqualsEmbreeForEveryKindOfLight) {
   for (const char* light : {"spot", "key", "ball", "sun"}) {

@@ -257,8 +257,8 @@ TEST(ShadowMap, SaysWhatDoesNotCombine) {
             std::string::npos);
 }
 
-// A lamp low above the scene lies outside its bounds, which supports() asks for; only the view samples show that they
-// lie to all sides of it.
+// A lamp low above the scene lies outside its bounds, which supports() asks for; only the view samples show
+// that they lie to all sides of it.
 TEST(ShadowMap, LightWithViewSamplesOnAllSidesTakesNeitherWarpNorCascades) {
   Frame frame;
   add_ground(frame.geometry, 6);

@@ -19,7 +19,7 @@ using vec4 = Vec4f;
 
 SHARED_CONSTANT most_faces = 6u;
 SHARED_CONSTANT group_lanes = 64u;
-SHARED_CONSTANT samples_per_lane = 16u;   // of the bounds' reduction
+SHARED_CONSTANT samples_per_lane = 16u;  // of the bounds' reduction
 SHARED_CONSTANT triangles_per_lane = 8u;
 SHARED_CONSTANT small_rows =
     16u;  // triangles over at most so many rows of texels are done by one invocation,
@@ -84,14 +84,15 @@ struct BoundsPush {
 
 struct BinPush {
   ADDRESS_OF(FrameRef) frame;
-  ADDRESS_OF(UVec4Array) samples;  // per pixel: where its shadow segment begins; its own triangle, or not_listed
-  ADDRESS_OF(UintArray) away;      // as CastPush
+  ADDRESS_OF(UVec4Array)
+  samples;                     // per pixel: where its shadow segment begins; its own triangle, or not_listed
+  ADDRESS_OF(UintArray) away;  // as CastPush
   ADDRESS_OF(ProgressRef) progress;
-  ADDRESS_OF(UintArray) lengths;   // per texel
-  ADDRESS_OF(UintArray) offsets;   // per texel
-  ADDRESS_OF(UintArray) texels;    // per pixel: its texel; no_slot: in no list
-  ADDRESS_OF(UintArray) slots;     // per pixel: its place in its texel's list, then in the array of all lists
-  ADDRESS_OF(UVec4Array) lists;    // samples in the order of the lists
+  ADDRESS_OF(UintArray) lengths;  // per texel
+  ADDRESS_OF(UintArray) offsets;  // per texel
+  ADDRESS_OF(UintArray) texels;   // per pixel: its texel; no_slot: in no list
+  ADDRESS_OF(UintArray) slots;    // per pixel: its place in its texel's list, then in the array of all lists
+  ADDRESS_OF(UVec4Array) lists;   // samples in the order of the lists
   uint count;
   uint unused;
 };
@@ -104,7 +105,7 @@ struct CastPush {
   ADDRESS_OF(UintArray) offsets;
   ADDRESS_OF(UVec4Array) lists;
   ADDRESS_OF(UintArray) blocked;  // 1 or 0 per view sample, in the order of the lists
-  ADDRESS_OF(UintArray) away;     // per triangle: 1 when it is of a closed mesh and turned away from the light
+  ADDRESS_OF(UintArray) away;  // per triangle: 1 when it is of a closed mesh and turned away from the light
   ADDRESS_OF(UintArray) casters;  // casters from the front, triangles of Progress::front_count from the back
   ADDRESS_OF(ItemArray) items;    // triangle; first row, rows
   ADDRESS_OF(ProgressRef) progress;
