@@ -10,13 +10,13 @@ constexpr uint32_t levels_of_cuts = 3, per_lane = 1u << levels_of_cuts;
 
 }  // namespace
 
-void SampleGroups::setup(gpu::Device& device, uint32_t lanes) {
+void SampleGroups::setup(gpu::Device& device, uint32_t lanes, bool in_lists) {
   tile_height_ = 1;
   while (tile_height_ * tile_height_ * 2 <= per_lane * lanes) tile_height_ *= 2;
   if (tile_height_ * tile_height_ > per_lane * lanes) tile_height_ /= 2;
   tile_width_ = per_lane * lanes / tile_height_;
   const gpu::Specialization constants[] = {
-      {0, lanes}, {1, tile_width_}, {2, tile_height_}, {3, levels_of_cuts}};
+      {0, lanes}, {1, tile_width_}, {2, tile_height_}, {3, levels_of_cuts}, {4, in_lists}};
   pipeline_ = gpu::ComputePipeline(device, sample_groups_spv, sizeof(SampleGroupsConstants), constants,
                                    std::vector<gpu::ImageUse>(3, gpu::ImageUse::sampled_nearest));
 }
@@ -38,6 +38,18 @@ void SampleGroups::record(gpu::Commands& commands, const Input& in) const {
   pc.tiles_x = tiles_x(in.width);
   pc.tiles = tiles(in.width, in.height);
   pc.slack = in.slack;
+  pc.depth_weight = in.depth_weight;
+  commands.dispatch(pipeline_, pc, pc.tiles);
+}
+
+void SampleGroups::arrange(gpu::Commands& commands, const Lists& in) const {
+  SampleGroupsConstants pc{};
+  pc.slots = in.slots;
+  pc.group_lists = in.group_lists;
+  pc.first_groups = in.first_groups;
+  pc.lengths = in.lengths;
+  pc.tiles_x = 1;
+  pc.tiles = in.groups;
   pc.depth_weight = in.depth_weight;
   commands.dispatch(pipeline_, pc, pc.tiles);
 }

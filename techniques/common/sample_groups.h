@@ -9,7 +9,8 @@ namespace penumbra {
 class SampleGroups {
  public:
   // `lanes`: view samples of a group = lanes of a subgroup, a power of two from 4 to 32.
-  void setup(gpu::Device& device, uint32_t lanes);
+  // `in_lists`: for arrange() in place of record().
+  void setup(gpu::Device& device, uint32_t lanes, bool in_lists = false);
   // Groups that width x height pixels can make at most; each has `lanes` slots.
   uint32_t capacity(uint32_t width, uint32_t height) const;
   // Texel arrays: a LightBasis; P' (w = 0: no view sample) and Ng per pixel. Not while commands are in
@@ -21,6 +22,14 @@ class SampleGroups {
     float slack = 0, depth_weight = 1;
   };
   void record(gpu::Commands& commands, const Input& in) const;
+  // View samples that are in lists already, `lanes` slots per group: rearranged within each list, so that
+  // groups are of neighbours. Addresses: list of each group; of each list its first group and its length.
+  struct Lists {
+    uint64_t slots = 0, group_lists = 0, first_groups = 0, lengths = 0;
+    uint32_t groups = 0;
+    float depth_weight = 1;
+  };
+  void arrange(gpu::Commands& commands, const Lists& in) const;
 
  private:
   uint32_t tiles_x(uint32_t width) const { return (width + tile_width_ - 1) / tile_width_; }

@@ -93,7 +93,6 @@ void SampleBasedSoft::frame(const RenderInput& in, gpu::PassRecorder& passes,
   state_.begin(in, passes);
   lists_.run(state_, in, passes);
   casters_.prepare(state_, *in.scene_case, passes);
-  passes.finish();
   soft_.reset();
   const uint32_t groups = lists_.group_count();
   if (groups > 0) {

@@ -30,12 +30,14 @@ void SampleLists::setup(const FrameState& state) {
         gpu::ComputePipeline(device, sample_based_soft_measure_lists_spv, sizeof(SamplesConstants), measure);
   }
   bin_scan_.setup(device, state.lanes);
+  groups_.setup(device, state.lanes, true);
   group_scan_.setup(device, state.lanes, state.lanes);
 }
 
 void SampleLists::bind(const FrameState& state) {
   const VkImageView views[] = {state.frame_texels.view()};
   project_.bind_images(views);
+  groups_.bind(state.frame_texels.view(), state.origin_texels.view(), state.normal_texels.view());
 }
 
 uint32_t SampleLists::group_capacity(const FrameState& state) const {
@@ -101,6 +103,10 @@ void SampleLists::run(const FrameState& state, const RenderInput& in, gpu::PassR
     commands.dispatch(bin_[1], pc, groups_for(state.pixels(), state.lanes * pixels_per_lane));
     commands.copy(group_scratch_, scratch_host_, 8);
   });
+  passes.finish();
+  const SampleGroups::Lists lists{slots_.address(), group_lists_.address(), first_groups_.address(),
+                                  lengths_.address(), group_count()};
+  passes.device_pass("group_samples", [&](gpu::Commands& commands) { groups_.arrange(commands, lists); });
 }
 
 uint32_t SampleLists::group_count() const {

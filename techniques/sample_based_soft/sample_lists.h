@@ -1,6 +1,7 @@
 // The lists of view samples in the light's view: one dense array, cut into groups [Sintorn2008, sec. 3.1].
 #pragma once
 #include "techniques/common/prefix_scan.h"
+#include "techniques/common/sample_groups.h"
 #include "techniques/sample_based_soft/frame_state.h"
 
 namespace penumbra::sample_based_soft {
@@ -10,9 +11,8 @@ class SampleLists {
   void setup(const FrameState& state);
   // Whenever texel arrays were made anew.
   void bind(const FrameState& state);
-  // Passes "project_samples", "bin_samples".
+  // Passes "project_samples", "bin_samples", "group_samples". Waits for the device.
   void run(const FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
-  // After the device has finished.
   uint32_t group_count() const;
   uint32_t group_capacity(const FrameState& state) const;
 
@@ -28,6 +28,7 @@ class SampleLists {
 
   gpu::ComputePipeline project_, bin_[2], measure_[2];
   PrefixScan bin_scan_, group_scan_;
+  SampleGroups groups_;
   gpu::Buffer places_, bins_, counts_, begins_, farthest_, lengths_, first_groups_, slots_, group_lists_;
   gpu::Buffer bin_scratch_, group_scratch_, scratch_host_;
   uint32_t slices_ = 1;

@@ -42,7 +42,9 @@ TEST_P(SampleBasedSoftScene, DiffersFromEmbreeInTiesOnly) {
   const auto& [scene, kind] = GetParam();
   Frame frame = Scene::load(scene, {"configs/scenes"}).frame(0, "", "", -1);
   frame.light = light_of(scene, kind);
-  const int size = kind == "rectangle" ? 512 : 256;
+  // Spheres and volumes are evaluated sample by sample, which takes long with many triangles.
+  const bool small = kind != "rectangle" && (scene == "bunny" || scene == "bird_nest");
+  const int size = small ? 256 : 512;
   Stage stage(std::move(frame), size, size);
   stage.light_samples = make_light_samples(stage.frame.light, {16, 16});
   const MatchedReference& truth = stage.reference(ReferenceOrigin::offset);
@@ -50,7 +52,7 @@ TEST_P(SampleBasedSoftScene, DiffersFromEmbreeInTiesOnly) {
   const Rendered r = stage.render(*stage.built(sample_based_soft_technique(), {}), true, false);
   const auto d = testing::explain_differences(oracle, stage.frame.light, stage.light_samples,
                                               stage.view.host(), r.mask, truth.mask, truth.evaluated);
-  EXPECT_GT(d.bits, kind == "rectangle" ? 10'000'000U : 5'000'000U);
+  EXPECT_GT(d.bits, 10'000'000U);
   EXPECT_LE(static_cast<double>(d.differing), 1e-5 * static_cast<double>(d.bits));
   EXPECT_EQ(d.unexplained, 0U) << "the worst is " << d.worst << " tolerances from a tie";
   std::printf("%s, %s: %llu of %llu bits differ; the worst is %.3g tolerances from a tie\n", scene.c_str(),

@@ -227,7 +227,9 @@ TEST_P(SampleBasedSoft, GoesOnWhereADispatchOrTheBudgetEnds) {
   const Rendered whole = many.render(with({{"grid_size", grid}}));
   const Rendered parts = many.render(with({{"grid_size", grid}, {"list_budget_mib", int64_t{1}}}), true);
   EXPECT_EQ(many.differing(whole, parts), 0U);
-  EXPECT_GT(testing::number(parts.counters, "chunks"), 1);
+  if (GetParam() == "triangles") {
+    EXPECT_GT(testing::number(parts.counters, "chunks"), 1);
+  }
 }
 
 }  // namespace

@@ -15,6 +15,8 @@ namespace penumbra {
 struct SampleGroupsConstants {
   PENUMBRA_ADDRESS(Uints) slots;        // out: pixel of each slot, SG slots per group
   PENUMBRA_ADDRESS(Uints) group_count;  // out: one counter, 0 before
+  PENUMBRA_ADDRESS(Uints) group_lists;  // in lists: list of each group; of each list its first group, length
+  PENUMBRA_ADDRESS(Uints) first_groups, lengths;
   PENUMBRA_UINT width, height, tiles_x, tiles;
   float slack;         // world: more than |P' - P|
   float depth_weight;  // of the distance to the light against the directions across
@@ -36,7 +38,7 @@ struct MaskResolveConstants {
 #undef PENUMBRA_UINT
 #undef PENUMBRA_ADDRESS
 #ifdef __cplusplus
-static_assert(sizeof(SampleGroupsConstants) <= 128);
+static_assert(sizeof(SampleGroupsConstants) <= 128 && sizeof(SampleGroupsConstants) % 8 == 0);
 static_assert(sizeof(PrefixScanConstants) <= 128);
 static_assert(sizeof(MaskResolveConstants) <= 128 && sizeof(MaskResolveConstants) % 8 == 0);
 }  // namespace

@@ -3,6 +3,9 @@
 // One subgroup does one tile, a lane holds eight of its pixels. A level finds the longest axis of each part, ranks all
 // samples along it by counting the smaller ones (arithmetic is cheap here, memory is not) and cuts at the middle.
 // Samples that no light sample can reach are left out; the last group of a tile is filled up with no_sample.
+//
+// IN_LISTS: view samples are in lists already, each in groups of its own; runs of eight groups of a list are rearranged
+// where they are.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -17,6 +20,7 @@ layout(constant_id = 0) const uint SG = 8;
 layout(constant_id = 1) const uint TILE_WIDTH = 8;     // TILE_WIDTH * tile height = PER_LANE SG
 layout(constant_id = 2) const uint TILE_HEIGHT = 8;
 layout(constant_id = 3) const uint LEVELS = 3;
+layout(constant_id = 4) const bool IN_LISTS = false;
 #include "techniques/common/shaders/subgroup.glsl"
 const uint PER_LANE = 1u << LEVELS;   // pixels of a tile that a lane holds
 
@@ -32,6 +36,13 @@ void main() {
   uint tile = linear_group();
   if (tile >= pc.tiles) return;
   uint lane = gl_SubgroupInvocationID;
+  uint taken = 0u;   // in lists: view samples of the run
+  if (IN_LISTS) {
+    uint list = pc.group_lists.at[tile], before = tile - pc.first_groups.at[list];
+    if (before % PER_LANE != 0u) return;
+    taken = min(pc.lengths.at[list] - before * SG, PER_LANE * SG);
+    if (taken <= SG) return;
+  }
   LightBasis light = light_basis(light_texels);
   uvec2 corner = uvec2(tile % pc.tiles_x, tile / pc.tiles_x) * uvec2(TILE_WIDTH, TILE_HEIGHT);
 
@@ -45,10 +56,11 @@ void main() {
     uvec2 xy = corner + uvec2(q % TILE_WIDTH, q / TILE_WIDTH);
     bool inside = xy.x < pc.width && xy.y < pc.height;
     pixel[k] = inside ? xy.y * pc.width + xy.x : 0u;
+    if (IN_LISTS) pixel[k] = pc.slots.at[tile * SG + min(q, taken - 1u)];
     vec4 o = texel(origin_texels, pixel[k]);
     vec3 n = texel(normal_texels, pixel[k]).xyz;
     vec3 w = to_working(light, o.xyz);
-    bool active_ = inside && reachable(light, o, n, pc.slack);
+    bool active_ = IN_LISTS ? q < taken : inside && reachable(light, o, n, pc.slack);
     at[k] = vec3(w.xy, w.z * pc.depth_weight);
     key[k] = active_ ? 0 : inactive;
     rank[k] = 0u;
@@ -99,6 +111,11 @@ void main() {
     }
   }
 
+  if (IN_LISTS) {
+    [[unroll]] for (uint k = 0u; k < PER_LANE; k++)
+      if (key[k] != inactive) pc.slots.at[tile * SG + rank[k]] = pixel[k];
+    return;
+  }
   uint groups = (count + SG - 1u) / SG, base = 0u;
   if (lane == 0u) base = atomicAdd(pc.group_count.at[0], groups);
   base = subgroupShuffle(base, 0u) * SG;

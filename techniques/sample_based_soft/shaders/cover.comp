@@ -27,9 +27,10 @@ layout(set = 0, binding = 4) uniform sampler2D frame_texels;
 layout(push_constant) uniform Push { CoverConstants pc; };
 
 // Neighbours cost alike; a device that deals its threads contiguous work would leave the dear ones to one of them.
+// Over a rectangle of 64 rows; what a dispatch has beyond it does nothing.
 uint interleaved(uint n) {
   uint columns = (pc.lists + 63u) / 64u;
-  return (n % 64u) * columns + n / 64u;
+  return n < 64u * columns ? (n % 64u) * columns + n / 64u : 0xffffffffu;
 }
 
 bool outline_touches(uint caster, uint sides, vec4 rect) {

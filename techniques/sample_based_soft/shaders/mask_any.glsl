@@ -12,7 +12,8 @@ layout(set = 0, binding = 7) uniform usampler2D table;           // TABLE_TEXELS
 vec3 p;
 vec3 group_lo, group_hi;
 uint mask[WORDS];
-float pad, table_radius;
+float pad, table_radius;   // table_radius: of the samples about the centre
+vec3 light_middle, light_extent;
 vec3 grow_lo, grow_hi;      // from the group's box to the light's, per unit of t
 uint first_word;
 
@@ -68,6 +69,22 @@ bool touches(vec3 lo, vec3 hi, out uint rect) {
 }
 
 bool separates(vec3 a, vec3 b, vec3 c) { return true; }
+
+// False where a half-space of the triangle, as p sees it, holds no point of the light's bounds.
+bool may_hide(vec3 a, vec3 b, vec3 c) {
+  vec3 ab = edge_normal(a, b), bc = edge_normal(b, c), ca = edge_normal(c, a), plane = edge_normal(b - a, c - a);
+  float volume = ab.x * c.x + ab.y * c.y + ab.z * c.z, s = volume < 0.0 ? -1.0 : 1.0;
+  vec3 middle = light_middle - p, reach = light_extent + 1e-5 * (abs(middle) + light_extent);
+  bool may = true;
+  [[unroll]] for (uint k = 0u; k < 3u; k++) {
+    vec3 n = (k == 0u ? ab : k == 1u ? bc : ca) * s;
+    float in_box = dot(n, middle) + dot(abs(n), reach);
+    float in_ball = sqrt(dot(n, n)) * table_radius * 1.0001 - dot(n, p) + 1e-5 * dot(abs(n), abs(p));
+    may = may && in_box >= 0.0 && in_ball >= 0.0;
+  }
+  float beyond = dot(plane * s, middle) + dot(abs(plane), reach);
+  return may && beyond >= abs(volume) * 0.9999;
+}
 
 void add_bits(int word, uint bits) {
   [[unroll]] for (int w = 0; w < WORDS; w++) mask[w] |= w == word ? bits : 0u;

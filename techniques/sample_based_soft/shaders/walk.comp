@@ -47,7 +47,9 @@ uint pixel;
 bool idle;
 vec3 target;          // HARD: the light sample that stands for all
 bool hidden_ = false;
+#ifdef GRID
 vec3 light_middle, light_extent;
+#endif
 
 FrameConstants frame_constants() {
   FrameConstants f;
@@ -158,6 +160,24 @@ void rasterise_slots(uint slot, bool wanted, bool listed) {
   bool hit = touched && wanted && apart && meant;
   uint left = subgroupBallot(hit).x;
   if (left == 0u) return;
+#ifndef GRID
+  // Evaluating all samples is dear: first, cheaply, which triangles can hide any from any view sample.
+  uint sieve = left, kept = 0u;
+  do {
+    uint l = uint(findLSB(sieve));
+    sieve &= sieve - 1u;
+    vec3 A = vec3(subgroupShuffle(a.x, l), subgroupShuffle(a.y, l), subgroupShuffle(a.z, l)) - p;
+    vec3 B = vec3(subgroupShuffle(b.x, l), subgroupShuffle(b.y, l), subgroupShuffle(b.z, l)) - p;
+    vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
+    bool open_ = COUNTING == 2u || !is_full();
+    bool may = may_hide(A, B, C) && open_;
+    bool any_may = subgroupAny(may);
+    kept |= any_may ? 1u << l : 0u;
+    turns++;
+  } while (sieve != 0u);
+  left = kept;
+  if (left == 0u) return;
+#endif
   do {
     uint l = uint(findLSB(left));
     left &= left - 1u;
@@ -257,9 +277,10 @@ void add_statistics() {
 }
 
 // Groups that cost much are neighbours; a device that deals its threads contiguous work would leave them all to one.
+// Over a rectangle of 64 rows of 16; what a dispatch has beyond it does nothing.
 uint interleaved(uint n) {
   uint columns = ((pc.work_groups + 15u) / 16u + 63u) / 64u, chunk = n / 16u;
-  return ((chunk % 64u) * columns + chunk / 64u) * 16u + n % 16u;
+  return n < 1024u * columns ? ((chunk % 64u) * columns + chunk / 64u) * 16u + n % 16u : 0xffffffffu;
 }
 
 void main() {
