@@ -15,6 +15,7 @@ namespace penumbra::gears {
 namespace {
 
 constexpr uint32_t histogram_words = 2 * 1024;
+constexpr uint32_t samples_per_lane = 16;  // of bin_samples.comp
 
 }  // namespace
 
@@ -32,13 +33,14 @@ void Cells::setup(FrameState& state) {
   prepare_ = prepare_pipeline(state);
   sample_scan_.setup(device, state.lanes, state.lanes);
   triangle_scan_.setup(device, state.lanes);
+  const std::vector<gpu::ImageUse> arrays(3, gpu::ImageUse::sampled_nearest);
   for (uint32_t stage = 0; stage < 2; ++stage) {
-    const gpu::Specialization subgroup[] = {{0, state.lanes}, {1, stage}};
+    const gpu::Specialization subgroup[] = {{0, state.lanes}, {1, stage}, {2, samples_per_lane}};
     const gpu::Specialization wide[] = {{0, wide_lanes}, {1, stage}, {2, 0}};
     const gpu::Specialization large[] = {{0, wide_lanes}, {1, stage}, {2, 1}};
-    fit_[stage] = gpu::ComputePipeline(device, gears_fit_grid_spv, sizeof(FitGridConstants), wide);
+    fit_[stage] = gpu::ComputePipeline(device, gears_fit_grid_spv, sizeof(FitGridConstants), wide, arrays);
     bin_samples_[stage] =
-        gpu::ComputePipeline(device, gears_bin_samples_spv, sizeof(BinSamplesConstants), subgroup);
+        gpu::ComputePipeline(device, gears_bin_samples_spv, sizeof(BinSamplesConstants), subgroup, arrays);
     bin_small_[stage] =
         gpu::ComputePipeline(device, gears_bin_triangles_spv, sizeof(BinTrianglesConstants), wide);
     bin_large_[stage] =
@@ -54,7 +56,13 @@ void Cells::build(FrameState& state, const Geometry& geometry, gpu::PassRecorder
   passes.finish();
 }
 
-void Cells::bind(const FrameState& state) { walker_.bind(state, {}); }
+void Cells::bind(const FrameState& state) {
+  walker_.bind(state, {});
+  const VkImageView arrays[] = {state.frame_texels.view(), state.origin_texels.view(),
+                                state.normal_texels.view()};
+  for (gpu::ComputePipeline* p : {&fit_[0], &fit_[1], &bin_samples_[0], &bin_samples_[1]})
+    p->bind_images(arrays);
+}
 
 void Cells::allocate(FrameState& state) {
   gpu::Device& device = *state.device;
@@ -79,7 +87,6 @@ void Cells::bin_samples(FrameState& state, const RenderInput&, gpu::PassRecorder
     commands.fill(histogram_, 0);
     commands.barrier();
     FitGridConstants pc{};
-    pc.frame = state.frame.address();
     pc.histogram = histogram_.address();
     pc.header = state.header.address();
     pc.width = state.width;
@@ -93,7 +100,6 @@ void Cells::bin_samples(FrameState& state, const RenderInput&, gpu::PassRecorder
     commands.dispatch(fit_[1], pc, 1);
   });
   BinSamplesConstants pc{};
-  pc.frame = state.frame.address();
   pc.header = state.header.address();
   pc.counts = sample_counts_.address();
   pc.first_groups = first_groups_.address();
@@ -102,7 +108,7 @@ void Cells::bin_samples(FrameState& state, const RenderInput&, gpu::PassRecorder
   pc.pixels = state.pixels();
   pc.grid_size = grid_size_;
   pc.slack = state.slack;
-  const uint64_t groups = groups_for(state.pixels(), state.lanes);
+  const uint64_t groups = groups_for(state.pixels(), uint64_t{state.lanes} * samples_per_lane);
   passes.device_pass("bin_samples", [&](gpu::Commands& commands) {
     commands.fill(sample_counts_, 0);
     commands.fill(state.slots, no_triangle);

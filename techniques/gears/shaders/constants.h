@@ -61,7 +61,6 @@ struct WalkCellsConstants {
 };
 
 struct FitGridConstants {
-  PENUMBRA_ADDRESS(FrameRef) frame;
   PENUMBRA_ADDRESS(Uints) histogram;  // BINS for x, BINS for y; 0 before
   PENUMBRA_ADDRESS(HeaderRef) header;
   PENUMBRA_UINT width, height, step;  // every step-th pixel of every step-th row
@@ -70,7 +69,6 @@ struct FitGridConstants {
 };
 
 struct BinSamplesConstants {
-  PENUMBRA_ADDRESS(FrameRef) frame;
   PENUMBRA_ADDRESS(HeaderRef) header;
   PENUMBRA_ADDRESS(Uints) counts;        // per cell, 0 before either stage
   PENUMBRA_ADDRESS(Uints) first_groups;  // per cell: its first group

@@ -9,13 +9,16 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint LANES = 64;
 layout(constant_id = 1) const uint STAGE = 0;
 
+layout(set = 0, binding = 0) uniform sampler2D frame_texels;    // FrameConstants
+layout(set = 0, binding = 1) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample),
+layout(set = 0, binding = 2) uniform sampler2D normal_texels;   // Ng
 layout(push_constant) uniform Push { FitGridConstants pc; };
 
 const uint BINS = 1024u;
 
-float plane_of(float bin) {
+float plane_of(float bin, float unit) {
   float t = clamp(bin / float(BINS) * 2.0 - 1.0, -0.9999, 0.9999);
-  return t / (1.0 - abs(t)) * pc.frame.f.grid_unit;
+  return t / (1.0 - abs(t)) * unit;
 }
 
 void add_samples() {
@@ -23,11 +26,12 @@ void add_samples() {
   uint i = linear_group() * LANES + gl_LocalInvocationID.x;
   if (i >= columns * rows) return;
   uint pixel = (i / columns) * pc.step * pc.width + (i % columns) * pc.step;
-  vec4 o = pc.frame.f.origin.at[pixel];
-  if (!reachable(pc.frame.f.light, o, pc.frame.f.normal.at[pixel].xyz, pc.slack)) return;
-  GridPoint q = project(pc.frame.f, to_working(pc.frame.f.light, o.xyz));
-  if (perspective(pc.frame.f) && !(q.z > pc.frame.f.near)) return;
-  vec2 v = q.at / pc.frame.f.grid_unit, t = v / (1.0 + abs(v));
+  FrameConstants f = camera_constants(frame_texels);
+  vec4 o = texel(origin_texels, pixel);
+  if (!reachable(f.light, o, texel(normal_texels, pixel).xyz, pc.slack)) return;
+  GridPoint q = project(f, to_working(f.light, o.xyz));
+  if (perspective(f) && !(q.z > f.near)) return;
+  vec2 v = q.at / f.grid_unit, t = v / (1.0 + abs(v));
   uvec2 bin = uvec2(clamp((t * 0.5 + 0.5) * float(BINS), 0.0, float(BINS - 1u)));
   atomicAdd(pc.histogram.at[bin.x], 1u);
   atomicAdd(pc.histogram.at[BINS + bin.y], 1u);
@@ -46,8 +50,9 @@ void fit(uint axis) {
     q1 = n > 0u && before < high ? b : q1;
     before += n;
   }
-  float lo = plane_of(float(first)), hi = plane_of(float(last) + 1.0);
-  float a = plane_of(float(q0)), b = plane_of(float(q1) + 1.0), more = (b - a) * 0.15;
+  float unit = texel(frame_texels, pad_texel).z;
+  float lo = plane_of(float(first), unit), hi = plane_of(float(last) + 1.0, unit);
+  float a = plane_of(float(q0), unit), b = plane_of(float(q1) + 1.0, unit), more = (b - a) * 0.15;
   lo = max(lo, a - more);
   hi = min(hi, b + more);
   pc.header.h.grid_lo[axis] = all == 0u ? 0.0 : lo;

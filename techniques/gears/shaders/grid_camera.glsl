@@ -1,4 +1,21 @@
 // The grid camera C: its image plane carries the grid G.
+
+// What reachable() and project() need of the frame's constants, from its TexelArray: as a buffer every number of them
+// would be loaded lane by lane on lavapipe.
+FrameConstants camera_constants(sampler2D array) {
+  FrameConstants f;
+  f.light = light_basis(array);
+  f.camera_x = texel(array, camera_texel);
+  f.camera_y = texel(array, camera_texel + 1u);
+  f.camera_z = texel(array, camera_texel + 2u);
+  f.camera_eye = texel(array, camera_texel + 3u);
+  vec4 last = texel(array, pad_texel);
+  f.pad = last.x;
+  f.near = last.y;
+  f.grid_unit = last.z;
+  return f;
+}
+
 struct GridPoint {
   vec2 at;        // on the image plane
   float z;        // distance before the camera

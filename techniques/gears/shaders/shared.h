@@ -37,7 +37,8 @@ struct FrameConstants {
 
 // Places in FrameConstants, for shaders that fetch them as texels.
 const PENUMBRA_UINT light_lo_texel = 13, light_hi_texel = 14, first_texel = 15, step_u_texel = 16,
-                    step_v_texel = 17, cone_texel = 24, apex_texel = 25, front_texel = 26, pad_texel = 27;
+                    step_v_texel = 17, camera_texel = 18, cone_texel = 24, apex_texel = 25, front_texel = 26,
+                    pad_texel = 27;  // from camera_texel on: camera_x, _y, _z, _eye
 
 // Counts that the device makes and the host reads.
 struct Header {
@@ -61,6 +62,8 @@ static_assert(offsetof(FrameConstants, light_lo) == 16 * light_lo_texel &&
 static_assert(offsetof(FrameConstants, first) == 16 * first_texel &&
               offsetof(FrameConstants, step_u) == 16 * step_u_texel &&
               offsetof(FrameConstants, step_v) == 16 * step_v_texel &&
+              offsetof(FrameConstants, camera_x) == 16 * camera_texel &&
+              offsetof(FrameConstants, camera_eye) == 16 * (camera_texel + 3) &&
               offsetof(FrameConstants, cone) == 16 * cone_texel &&
               offsetof(FrameConstants, apex) == 16 * apex_texel &&
               offsetof(FrameConstants, front) == 16 * front_texel &&
