@@ -1,5 +1,6 @@
 // Buffers and images: owning handles. Shaders reach buffers by address (GL_EXT_buffer_reference), never by
-// descriptor: so no range limit (maxStorageBufferRange is 128 MiB on lavapipe) and no descriptor sets.
+// descriptor: so no range limit (maxStorageBufferRange is 128 MiB on lavapipe) and no descriptor sets. (A
+// pass's constants may also be bound as a uniform block, see pipeline.h.)
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -22,8 +23,8 @@ enum class Memory {
 class Buffer {
  public:
   Buffer() = default;
-  // Usage: storage, vertex, index, indirect, transfer both ways, device address. Throws PointError when out
-  // of memory, naming `what` and the bytes.
+  // Usage: storage, uniform, vertex, index, indirect, transfer both ways, device address. Throws PointError
+  // when out of memory, naming `what` and the bytes.
   Buffer(Device& device, std::size_t bytes, Memory memory, const std::string& what);
   ~Buffer();
   Buffer(Buffer&&) noexcept;

@@ -45,6 +45,7 @@ VkSampler create_sampler(Device& device, ImageUse use) {
 }
 
 VkDescriptorType descriptor_type(ImageUse use) {
+  if (use == ImageUse::uniform_block) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
   return use == ImageUse::storage ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
                                   : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 }
@@ -88,7 +89,8 @@ void Pipeline::create_layout(Device& device, std::span<const ImageUse> images, u
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     std::vector<VkDescriptorPoolSize> sizes;
     for (ImageUse use : images) {
-      samplers_.push_back(use == ImageUse::storage ? VK_NULL_HANDLE : create_sampler(device, use));
+      const bool sampled = use != ImageUse::storage && use != ImageUse::uniform_block;
+      samplers_.push_back(sampled ? create_sampler(device, use) : VK_NULL_HANDLE);
       bindings.push_back({static_cast<uint32_t>(bindings.size()), descriptor_type(use), 1, stages, nullptr});
       sizes.push_back({descriptor_type(use), 1});
     }
@@ -119,6 +121,15 @@ void Pipeline::bind_images(std::span<const VkImageView> views) {
     writes[i].descriptorType = descriptor_type(image_uses_[i]), writes[i].pImageInfo = &infos[i];
   }
   vkUpdateDescriptorSets(device_->handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
+}
+
+void Pipeline::bind_block(const Buffer& buffer) {
+  const VkDescriptorBufferInfo info{buffer.handle(), 0, VK_WHOLE_SIZE};
+  VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+  write.dstSet = set_, write.dstBinding = static_cast<uint32_t>(image_uses_.size()) - 1;
+  write.descriptorCount = 1, write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  write.pBufferInfo = &info;
+  vkUpdateDescriptorSets(device_->handle(), 1, &write, 0, nullptr);
 }
 
 ComputePipeline::ComputePipeline(Device& device, Spirv code, uint32_t push_bytes,

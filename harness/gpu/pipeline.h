@@ -1,6 +1,7 @@
 // Compute and graphics pipelines. Parameters travel as push constants (at most 128 bytes: addresses of
 // buffers, a few numbers); images, where a pass samples or stores to them, as one set of combined image
-// samplers / storage images.
+// samplers / storage images; constants that do not fit, as a uniform block behind the images of that set (on
+// lavapipe the one way to read what is the same for all lanes once, not lane by lane).
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -21,8 +22,9 @@ struct Specialization {
 };
 
 // Binding i of set 0. Images must be in GENERAL layout.
-enum class ImageUse { sampled_nearest, sampled_linear, sampled_compare, storage };
+enum class ImageUse { sampled_nearest, sampled_linear, sampled_compare, storage, uniform_block };
 // sampled_compare: LESS_OR_EQUAL with linear filtering, clamp to a border of 1; the others clamp to edge.
+// uniform_block: no image but a uniform buffer (std140, at most 16 KiB); after all images.
 
 class Pipeline {
  public:
@@ -41,6 +43,8 @@ class Pipeline {
   // Images for bindings 0, 1, ... of set 0; whole views unless a view is given. Not while commands are in
   // flight.
   void bind_images(std::span<const VkImageView> views);
+  // The buffer of the uniform_block, whole. Under the same rule.
+  void bind_block(const Buffer& buffer);
   VkDescriptorSet descriptors() const { return set_; }
 
  protected:

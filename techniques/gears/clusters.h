@@ -5,8 +5,8 @@
 // where the light is already hidden.
 #pragma once
 #include "techniques/common/sample_groups.h"
-#include "techniques/gears/frame_state.h"
 #include "techniques/common/triangle_order.h"
+#include "techniques/gears/frame_state.h"
 #include "techniques/gears/walker.h"
 
 namespace penumbra::gears {

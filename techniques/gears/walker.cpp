@@ -35,16 +35,21 @@ void Walker::setup(const FrameState& state, gpu::Spirv grid, gpu::Spirv any, uin
   grid_ = grid;
   any_ = any;
   push_bytes_ = push_bytes;
-  arrays_ = 5 + more_arrays;
+  arrays_ = 4 + more_arrays;
   pipelines_.clear();
   pipeline(state, {true, true, true, false, Statistics::none});
 }
 
 void Walker::bind(const FrameState& state, std::span<const VkImageView> more) {
-  views_ = {state.frame_texels.view(), state.origin_texels.view(), state.position_texels.view(),
-            state.normal_texels.view(), state.triangle_texels.view()};
+  views_ = {state.origin_texels.view(), state.position_texels.view(), state.normal_texels.view(),
+            state.triangle_texels.view()};
   views_.insert(views_.end(), more.begin(), more.end());
-  for (auto& [variant, p] : pipelines_) p.bind_images(views_);
+  for (auto& [variant, p] : pipelines_) bind(state, p);
+}
+
+void Walker::bind(const FrameState& state, gpu::ComputePipeline& pipeline) const {
+  pipeline.bind_images(views_);
+  pipeline.bind_block(state.frame);
 }
 
 const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Variant& v) {
@@ -68,9 +73,10 @@ const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Vari
   } else {
     constants.insert(constants.end(), {{1, u(m.samples)}, {5, m.infinite}});
   }
-  p = gpu::ComputePipeline(*state.device, m.grid ? grid_ : any_, push_bytes_, constants,
-                           std::vector<gpu::ImageUse>(arrays_, gpu::ImageUse::sampled_nearest));
-  if (!views_.empty()) p.bind_images(views_);
+  std::vector<gpu::ImageUse> uses(arrays_, gpu::ImageUse::sampled_nearest);
+  uses.push_back(gpu::ImageUse::uniform_block);
+  p = gpu::ComputePipeline(*state.device, m.grid ? grid_ : any_, push_bytes_, constants, uses);
+  if (!views_.empty()) bind(state, p);
   return p;
 }
 

@@ -40,6 +40,7 @@ class Walker {
     Statistics statistics;
     auto operator<=>(const Variant&) const = default;
   };
+  void bind(const FrameState& state, gpu::ComputePipeline& pipeline) const;
   const gpu::ComputePipeline& pipeline(const FrameState& state, const Variant& v);
   uint32_t triangle_turns(const FrameState& state) const;
   uint32_t leaf_batch(const FrameState& state) const;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "tests/support/brute_force.h"
@@ -148,7 +149,18 @@ TEST_P(GearsAssignment, TakesEveryKindOfLight) {
   Light ball = point;
   ball.kind = LightKind::sphere;
   ball.radius = 0.4f;
-  for (const Light& light : {point, inside, spot, sun, ball}) {
+  Light window = testing::rectangle_light({1.5f, 3, -1}, {0, 0, 0}, 0.8f, 0.5f);
+  window.kind = LightKind::textured_rectangle;
+  window.texture_width = 3, window.texture_height = 2;
+  window.weights = {0, 1, 2, 4, 0.5f, 3};
+  Light cloud = point;
+  cloud.kind = LightKind::volume;
+  for (int i = 0; i < 50; ++i) {
+    const float t = static_cast<float>(i);
+    cloud.points.push_back({1.5f + 0.3f * std::cos(t), 3 + 0.01f * t, -1 + 0.3f * std::sin(t)});
+    cloud.weights.push_back(1 + 0.1f * t);
+  }
+  for (const Light& light : {point, inside, spot, sun, ball, window, cloud}) {
     SCOPED_TRACE(to_string(light.kind));
     Frame f = soup();
     f.light = light;

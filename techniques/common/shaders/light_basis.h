@@ -20,8 +20,8 @@ struct LightBasis {
   PENUMBRA_VEC4 row_x, row_y, row_z, origin;
   PENUMBRA_VEC4 corners[8];  // world; w = 0: a direction towards a light at infinity
   PENUMBRA_UINT corner_count;
-  PENUMBRA_UINT front_only;  // 1: receivers with working z <= 0 are behind the light
-  PENUMBRA_UINT padding[2];
+  PENUMBRA_UINT front_only;            // 1: receivers with working z <= 0 are behind the light
+  PENUMBRA_UINT padding_0, padding_1;  // no array: a uniform block would give each element 16 bytes
 };
 
 #ifdef __cplusplus

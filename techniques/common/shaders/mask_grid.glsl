@@ -139,17 +139,18 @@ bool separates(vec3 a, vec3 b, vec3 c) {
   return !((below_ > error && light_below > error) || (above < -error && light_above < -error));
 }
 
-// A half-space's bound on the columns of row j: column >= or <= slope j + offset.
+// Of a triangle's half-spaces on the columns of row j: column >= lo_slope j + lo_offset, <= hi_slope j + hi_offset. The
+// fourth is there for triangles that cross the light's plane.
 struct Bounds {
   vec3 lo_slope, lo_offset, hi_slope, hi_offset;
+  float lo4_slope, lo4_offset, hi4_slope, hi4_offset;
 };
 
 const float least = 1e-20;
 
-// Sets in each view sample's mask the light samples of `rect` that triangle (a, b, c) hides; corners relative to p.
-// CROSSING: the triangle crosses the light's plane; a fourth half-space keeps what lies beyond the light out.
-// Returns the number of light samples found (whether or not hidden before) where `counting`, else 0.
-uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) {
+// Of triangle (a, b, c); corners relative to p. `crossing`: it crosses the light's plane; a fourth half-space keeps what
+// lies beyond the light out.
+Bounds bounds_of(vec3 a, vec3 b, vec3 c, bool crossing) {
   a.z = -a.z;
   b.z = -b.z;
   c.z = -c.z;
@@ -162,26 +163,49 @@ uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) 
   vec3 inverse = -1.0 / mix(nx, uintBitsToFloat(sign_ | floatBitsToUint(least)), lessThan(abs(nx), vec3(least)));
   vec3 slope = ny * inverse, offset = (nz * p.z) * inverse - slope * p.y + p.x;
   bvec3 upper_bound = notEqual(sign_ ^ side, uvec3(0u));
-  vec3 lo_slope = mix(slope, vec3(0.0), upper_bound), lo_offset = mix(offset, vec3(-far_away), upper_bound);
-  vec3 hi_slope = mix(vec3(0.0), slope, upper_bound), hi_offset = mix(vec3(far_away), offset, upper_bound);
-  float lo4_slope = 0.0, lo4 = -far_away, hi4_slope = 0.0, hi4 = far_away;
+  Bounds e;
+  e.lo_slope = mix(slope, vec3(0.0), upper_bound);
+  e.lo_offset = mix(offset, vec3(-far_away), upper_bound);
+  e.hi_slope = mix(vec3(0.0), slope, upper_bound);
+  e.hi_offset = mix(vec3(far_away), offset, upper_bound);
+  e.lo4_slope = 0.0;
+  e.lo4_offset = -far_away;
+  e.hi4_slope = 0.0;
+  e.hi4_offset = far_away;
   if (crossing) {
     vec3 n = edge_normal(b - a, c - a);
     uint s = floatBitsToUint(n.x) & 0x80000000u;
     float inv = -1.0 / (abs(n.x) < least ? uintBitsToFloat(s | floatBitsToUint(least)) : n.x);
     float m = n.y * inv, o = (n.z * p.z - dot(n, a)) * inv - m * p.y + p.x;
     bool is_upper = (s ^ side) != 0u;
-    lo4_slope = is_upper ? 0.0 : m;
-    lo4 = is_upper ? -far_away : o;
-    hi4_slope = is_upper ? m : 0.0;
-    hi4 = is_upper ? o : far_away;
+    e.lo4_slope = is_upper ? 0.0 : m;
+    e.lo4_offset = is_upper ? -far_away : o;
+    e.hi4_slope = is_upper ? m : 0.0;
+    e.hi4_offset = is_upper ? o : far_away;
   }
+  return e;
+}
+
+// False when no row of `rect` has a column that keeps to the bounds: they are monotone in j, so the ends of the range of
+// rows tell, by the same roundings as span().
+bool may_cover(Bounds e, uint rect) {
+  float j0 = float((rect >> 16) & 255u), j1 = float(rect >> 24);
+  float x0 = upper(lower(e.lo_slope * j0 + e.lo_offset, e.lo_slope * j1 + e.lo_offset));
+  float x1 = lower(upper(e.hi_slope * j0 + e.hi_offset, e.hi_slope * j1 + e.hi_offset));
+  x0 = lower(upper(x0, float(rect & 255u)), float(PITCH));
+  x1 = upper(lower(x1, float((rect >> 8) & 255u)), -1.0);
+  return int(x1 + 1.0) + int(float(PITCH) - x0) > PITCH;
+}
+
+// Sets in each view sample's mask the light samples of `rect` within the bounds; `some`: there may be any.
+// Returns the number of light samples found (whether or not hidden before) where `counting`, else 0.
+uint fill_rows(Bounds e, uint rect, bool some, bool crossing, bool counting) {
   float c0 = float(rect & 255u), c1 = float((rect >> 8) & 255u);
   int j0 = int((rect >> 16) & 255u), j1 = int(rect >> 24);
   // Rows outside [j0, j1] that share a word with rows inside.
   int first_word = j0 / ROWS_PER_WORD, last_word = j1 / ROWS_PER_WORD;
   uint before = (0xffffffffu << ((j0 - first_word * ROWS_PER_WORD) * PITCH)), after = 0xffffffffu >> ((ROWS_PER_WORD - 1 - (j1 - last_word * ROWS_PER_WORD)) * PITCH);
-  int band = j0 / BAND_ROWS, last = j1 / BAND_ROWS;
+  int band = j0 / BAND_ROWS, last = some ? j1 / BAND_ROWS : band;
   uint found = 0u;
   turns += uint(last - band + 1);
   do {
@@ -190,10 +214,10 @@ uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) 
     [[unroll]] for (int k = 0; k < BAND_WORDS; k++) w[k] = 0u;
     [[unroll]] for (int r = 0; r < BAND_ROWS; r++) {
       float j = top + float(r);
-      float x0 = upper(lo_slope * j + lo_offset), x1 = lower(hi_slope * j + hi_offset);
+      float x0 = upper(e.lo_slope * j + e.lo_offset), x1 = lower(e.hi_slope * j + e.hi_offset);
       if (crossing) {
-        x0 = upper(x0, lo4_slope * j + lo4);
-        x1 = lower(x1, hi4_slope * j + hi4);
+        x0 = upper(x0, e.lo4_slope * j + e.lo4_offset);
+        x1 = lower(x1, e.hi4_slope * j + e.hi4_offset);
       }
       x0 = lower(upper(x0, c0), float(PITCH));
       x1 = upper(lower(x1, c1), -1.0);

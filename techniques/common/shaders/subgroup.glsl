@@ -29,3 +29,9 @@ PENUMBRA_BUTTERFLY(vec3, lowest, lower)
 PENUMBRA_BUTTERFLY(vec3, highest, upper)
 PENUMBRA_BUTTERFLY(uint, or_of_all, either)
 PENUMBRA_BUTTERFLY(uint, sum_of_all, sum)
+
+// Bits of the lanes with `v`. On lavapipe subgroupBallot() and the votes loop over the lanes.
+uint ballot(bool v) {
+  if (SG > 8u) return subgroupBallot(v).x;
+  return or_of_all(v ? 1u << gl_SubgroupInvocationID : 0u);
+}

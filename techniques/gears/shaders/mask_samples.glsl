@@ -62,14 +62,21 @@ bool touches(vec3 lo, vec3 hi, out uint rect) {
   return t0 <= t1 + 1e-5 * (1.0 + abs(t1));
 }
 
-uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) {
-  vec3 ab = edge_normal(a, b), bc = edge_normal(b, c), ca = edge_normal(c, a), plane = edge_normal(b - a, c - a);
-  float volume = ab.x * c.x + ab.y * c.y + ab.z * c.z, s = volume < 0.0 ? -1.0 : 1.0;
-  ab *= s;
-  bc *= s;
-  ca *= s;
-  plane *= s;
-  volume = abs(volume);
+// A triangle's half-spaces: what it hides is on the positive side of its edges' planes through p and beyond its own.
+struct Bounds {
+  vec3 ab, bc, ca, plane;
+  float volume;
+};
+
+Bounds bounds_of(vec3 a, vec3 b, vec3 c, bool crossing) {
+  Bounds e = Bounds(edge_normal(a, b), edge_normal(b, c), edge_normal(c, a), edge_normal(b - a, c - a), 0.0);
+  float volume = e.ab.x * c.x + e.ab.y * c.y + e.ab.z * c.z, s = volume < 0.0 ? -1.0 : 1.0;
+  return Bounds(e.ab * s, e.bc * s, e.ca * s, e.plane * s, abs(volume));
+}
+
+bool may_cover(Bounds e, uint rect) { return true; }
+
+uint fill_rows(Bounds e, uint rect, bool some, bool crossing, bool counting) {
   uint found = 0u;
   int q = 0;
   do {
@@ -79,11 +86,11 @@ uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) 
       for (int l = 0; l < min(int(SG), SAMPLES); l++) {
         vec3 d = vec3(subgroupShuffle(mine.x, uint(l)), subgroupShuffle(mine.y, uint(l)), subgroupShuffle(mine.z, uint(l)));
         d = INFINITE ? d : d - sample_origin - p;
-        precise float e0 = ab.x * d.x + ab.y * d.y + ab.z * d.z;
-        precise float e1 = bc.x * d.x + bc.y * d.y + bc.z * d.z;
-        precise float e2 = ca.x * d.x + ca.y * d.y + ca.z * d.z;
+        precise float e0 = e.ab.x * d.x + e.ab.y * d.y + e.ab.z * d.z;
+        precise float e1 = e.bc.x * d.x + e.bc.y * d.y + e.bc.z * d.z;
+        precise float e2 = e.ca.x * d.x + e.ca.y * d.y + e.ca.z * d.z;
         bool hidden = e0 >= 0.0 && e1 >= 0.0 && e2 >= 0.0;
-        hidden = hidden && (INFINITE || dot(plane, d) > volume) && 32 * q + k + l < SAMPLES;
+        hidden = hidden && (INFINITE || dot(e.plane, d) > e.volume) && 32 * q + k + l < SAMPLES;
         w |= hidden ? 1u << (k + l) : 0u;
         turns++;
       }

@@ -18,27 +18,10 @@ layout(constant_id = 12) const bool WALK = true;         // walks the tree or th
 #include "techniques/common/shaders/texels.glsl"
 #include "techniques/common/shaders/edge_half_spaces.glsl"
 
-layout(set = 0, binding = 0) uniform sampler2D frame_texels;    // FrameConstants
-layout(set = 0, binding = 1) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample),
-layout(set = 0, binding = 2) uniform sampler2D position_texels; // P,
-layout(set = 0, binding = 3) uniform sampler2D normal_texels;   // Ng
-layout(set = 0, binding = 4) uniform sampler2D triangles;       // 3 texels per slot, as prepare_triangles.comp writes them
-
-// What a walk needs of them.
-FrameConstants frame_constants() {
-  FrameConstants f;
-  f.light = light_basis(frame_texels);
-  f.light_lo = texel(frame_texels, light_lo_texel);
-  f.light_hi = texel(frame_texels, light_hi_texel);
-  f.first = texel(frame_texels, first_texel);
-  f.step_u = texel(frame_texels, step_u_texel);
-  f.step_v = texel(frame_texels, step_v_texel);
-  f.cone = texel(frame_texels, cone_texel);
-  f.apex = texel(frame_texels, apex_texel);
-  f.front = texel(frame_texels, front_texel);
-  f.pad = texel(frame_texels, pad_texel).x;
-  return f;
-}
+layout(set = 0, binding = 0) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample),
+layout(set = 0, binding = 1) uniform sampler2D position_texels; // P,
+layout(set = 0, binding = 2) uniform sampler2D normal_texels;   // Ng
+layout(set = 0, binding = 3) uniform sampler2D triangles;       // 3 texels per slot, as prepare_triangles.comp writes them
 
 const uint every_lane = SG < 32u ? (1u << SG) - 1u : 0xffffffffu;
 uint turns = 0u;
@@ -95,7 +78,7 @@ void store_visibility(Floats visibility) {
 bool all_blocked() {
   uint w = 0xffffffffu;
   [[unroll]] for (int q = 0; q < WORDS; q++) w &= mask[q];
-  return COUNTING != 2u && subgroupAll(w == 0xffffffffu);
+  return COUNTING != 2u && or_of_all(~w) == 0u;
 }
 
 // Lanes are triangles: the one in `slot` of each lane with `wanted`. Then all that touch the mask are rasterised, lanes
@@ -107,20 +90,26 @@ void rasterise_slots(uint slot, bool wanted, bool listed) {
   bool touched = touches(lower(lower(a.xyz, b), c), upper(upper(a.xyz, b), c), rect);
   bool apart = listed ? separates(a.xyz, b, c) : a.w == 0.0;
   bool hit = touched && wanted && apart;
-  uint left = subgroupBallot(hit).x;
+  uint left = ballot(hit);
   if (left == 0u) return;
   do {
-    uint l = uint(findLSB(left));
-    left &= left - 1u;
-    vec3 A = vec3(subgroupShuffle(a.x, l), subgroupShuffle(a.y, l), subgroupShuffle(a.z, l)) - p;
-    vec3 B = vec3(subgroupShuffle(b.x, l), subgroupShuffle(b.y, l), subgroupShuffle(b.z, l)) - p;
-    vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
-    uint found = rasterise(A, B, C, subgroupShuffle(rect, l), listed, COUNTING != 0u);
-    turns++;
-    if (COUNTING != 0u && !idle) {
-      pairs++;
-      necessary += found != 0u ? 1u : 0u;
-    }
+    Bounds e;
+    uint its_rect;
+    bool some;
+    do {   // to the next triangle that may cover a light sample of any view sample
+      uint l = uint(findLSB(left));
+      left &= left - 1u;
+      vec3 A = vec3(subgroupShuffle(a.x, l), subgroupShuffle(a.y, l), subgroupShuffle(a.z, l)) - p;
+      vec3 B = vec3(subgroupShuffle(b.x, l), subgroupShuffle(b.y, l), subgroupShuffle(b.z, l)) - p;
+      vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
+      its_rect = subgroupShuffle(rect, l);
+      e = bounds_of(A, B, C, listed);
+      some = or_of_all(may_cover(e, its_rect) ? 1u : 0u) != 0u;
+      turns++;
+      if (COUNTING != 0u && !idle) pairs++;
+    } while (!some && left != 0u);
+    uint found = fill_rows(e, its_rect, some, listed, COUNTING != 0u);
+    if (COUNTING != 0u && !idle) necessary += found != 0u ? 1u : 0u;
   } while (left != 0u);
 }
 

@@ -4,6 +4,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "techniques/gears/shaders/walk.glsl"
 
+layout(set = 0, binding = 4) uniform FrameBlock { FrameConstants frame; };
 layout(push_constant) uniform Push { WalkCellsConstants pc; };
 
 // Goes on after `done` triangles; returns how many are done, or 0xffffffff when all are.
@@ -28,7 +29,7 @@ void main() {
   uint n = linear_group();
   if (n >= pc.work_groups) return;
   uint g = RESUMED ? pc.resume.at[pc.read_list * pc.groups + n] : pc.first_group + n;
-  FrameConstants f = frame_constants();
+  FrameConstants f = frame;
   begin_group(g, every_lane, f, pc.slots, pc.light_samples);
   if (BEGIN)
     block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);

@@ -7,8 +7,8 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "techniques/gears/shaders/walk.glsl"
 
-
-layout(set = 0, binding = 5) uniform sampler2D boxes;   // 2 texels per node
+layout(set = 0, binding = 4) uniform sampler2D boxes;   // 2 texels per node
+layout(set = 0, binding = 5) uniform FrameBlock { FrameConstants frame; };
 layout(push_constant) uniform Push { WalkTreeConstants pc; };
 
 const uint DEPTH = 12u;
@@ -48,7 +48,7 @@ uint walk(uint start, uint limit) {
         hit = hit && last_leaf_below(child) >= start;
         turns += DEPTH;
       }
-      uint m = subgroupBallot(hit).x;
+      uint m = ballot(hit);
       leaf_first[parents] = first;
       leaf_mask[parents] = m;
       bool take = above_leaves && m != 0u, push = !above_leaves && m != 0u;
@@ -99,7 +99,7 @@ uint beyond_gap(uint lanes) {
   }
   float gap = next < 1e30 ? next - mine : 0.0, widest = highest(gap);
   float end = lowest(gap == widest ? mine : 1e30);
-  uint beyond = subgroupBallot(mine > end).x & lanes;
+  uint beyond = ballot(mine > end) & lanes;
   return widest > 0.0 ? beyond : 0u;
 }
 
@@ -135,7 +135,7 @@ void main() {
     lanes = pc.resume.at[entry + 1u];
     start = pc.resume.at[entry + 2u];
   }
-  FrameConstants f = frame_constants();
+  FrameConstants f = frame;
   begin_group(g, lanes, f, pc.slots, pc.light_samples);
   if (BEGIN)
     block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
