@@ -223,7 +223,7 @@ TEST_P(GearsAssignment, TakesPicturesOfAnySize) {
 
 // The turns of a dispatch are few, so that every group goes on many times; for the list as well.
 TEST_P(GearsAssignment, GoesOnWhereADispatchEnded) {
-  DeviceScene scene(device(), soup(600), 45, 35, {16, 16});
+  DeviceScene scene(device(), soup(1000), 45, 35, {16, 16});
   const GearsPicture whole = render(scene, with());
   GearsRun run(scene, with({{"dispatch_turns", int64_t{64}}, {"leaf_batch", int64_t{1}}}));
   run.render();

@@ -246,3 +246,8 @@ uint fill_rows(Bounds e, uint rect, bool some, bool crossing, bool counting) {
   } while (band <= last);
   return found;
 }
+
+// Both in one, for triangles that are seldom missed.
+uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) {
+  return fill_rows(bounds_of(a, b, c, crossing), rect, true, crossing, counting);
+}
