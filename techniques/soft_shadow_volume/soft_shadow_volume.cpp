@@ -94,7 +94,8 @@ TechniqueInfo soft_shadow_volume_technique() {
   info.lights = {LightKind::point, LightKind::rectangle, LightKind::sphere, LightKind::textured_rectangle};
   info.sampled = false;
   info.residence = Residence::device;
-  // It works at P itself; what a surface hides from its own points follows from its topology, as for P' just off it.
+  // It works at P itself; what a surface hides from its own points follows from its topology, as for P' just
+  // off it.
   info.origin = [](const ParamValues&) { return Origin::offset; };
   info.make = [](const ParamValues& values) {
     return std::make_unique<soft_shadow_volume::SoftShadowVolume>(param_table().read(values));

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "shaders/soft_shadow_volume_classify.h"
 #include "shaders/soft_shadow_volume_near_cap_frag.h"
 #include "shaders/soft_shadow_volume_near_cap_vert.h"
 #include "shaders/soft_shadow_volume_resolve.h"
@@ -45,10 +46,11 @@ gpu::GraphicsPipeline volume_pipeline(gpu::Device& device, gpu::Spirv vertex, gp
 }
 
 // Drawn where the far side of a wedge is behind the view sample.
-gpu::GraphicsPipeline wedge_pipeline(gpu::Device& device, uint32_t shape, bool table, bool counting) {
+gpu::GraphicsPipeline wedge_pipeline(gpu::Device& device, uint32_t shape, bool table, bool horizon,
+                                     bool counting) {
   gpu::GraphicsDesc desc =
       adding(soft_shadow_volume_wedge_vert_spv, soft_shadow_volume_wedge_frag_spv, sizeof(WedgePush));
-  desc.constants = {{0, shape}, {1, table ? 1U : 0U}, {2, counting ? 1U : 0U}};
+  desc.constants = {{0, shape}, {1, table ? 1U : 0U}, {2, counting ? 1U : 0U}, {3, horizon ? 1U : 0U}};
   desc.images.assign(5, gpu::ImageUse::sampled_nearest);
   desc.depth_format = VK_FORMAT_D32_SFLOAT, desc.depth_test = desc.depth_clamp = true;
   desc.depth_compare = VK_COMPARE_OP_LESS_OR_EQUAL, desc.cull = VK_CULL_MODE_BACK_BIT;
@@ -98,8 +100,12 @@ void WedgePass::setup(gpu::Device& device, uint32_t shape, gpu::PassRecorder& pa
   sides_ = volume_pipeline(device, soft_shadow_volume_side_vert_spv, soft_shadow_volume_side_frag_spv);
   near_caps_ =
       volume_pipeline(device, soft_shadow_volume_near_cap_vert_spv, soft_shadow_volume_near_cap_frag_spv);
-  coverage_ = wedge_pipeline(device, shape, table, false);
-  counting_ = wedge_pipeline(device, shape, false, true);
+  classify_pipeline_ =
+      gpu::ComputePipeline(device, soft_shadow_volume_classify_spv, sizeof(ClassifyPush), of_shape);
+  for (const bool horizon : {false, true}) {
+    coverage_[horizon] = wedge_pipeline(device, shape, table, horizon, false);
+    counting_[horizon] = wedge_pipeline(device, shape, false, horizon, true);
+  }
 }
 
 void WedgePass::set_light(gpu::Device& device, const Light& light, gpu::PassRecorder& passes) {
@@ -123,29 +129,57 @@ void WedgePass::set_light(gpu::Device& device, const Light& light, gpu::PassReco
   passes.finish();  // the array that it copies from ends here
 }
 
-void WedgePass::begin(const RenderInput& in, gpu::PassRecorder& passes) {
-  const bool fits = sums_ && sums_.desc().width == static_cast<uint32_t>(in.view_samples->width()) &&
-                    sums_.desc().height == static_cast<uint32_t>(in.view_samples->height());
-  if (!fits) {
-    constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    constexpr VkFormat four = VK_FORMAT_R32G32B32A32_SFLOAT;
-    position_ = image(in, four, read, "soft shadow volumes: positions");
-    normal_ = image(in, four, read, "soft shadow volumes: normals");
-    sums_ = image(in, sum_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                  "soft shadow volumes: sums");
-    sum_buffer_ = gpu::Buffer(*in.scene_case->device, std::size_t{pixels(in)} * sizeof(Vec2f),
-                              gpu::Memory::device, "soft shadow volumes: sums");
-    const std::array views{position_.view(), normal_.view(), tables_.angles(), tables_.areas(),
-                           texture_.view()};
-    resolve_pipeline_.bind_images(std::span(views).last(1));
-    coverage_.bind_images(views), counting_.bind_images(views);
-    sides_.bind_images(std::span(views).first(1)), near_caps_.bind_images(std::span(views).first(1));
+void WedgePass::ensure(const RenderInput& in, gpu::PassRecorder& passes) {
+  if (sums_ && sums_.desc().width == static_cast<uint32_t>(in.view_samples->width()) &&
+      sums_.desc().height == static_cast<uint32_t>(in.view_samples->height()))
+    return;
+  constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  constexpr VkImageUsageFlags depth =
+      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  constexpr VkFormat four = VK_FORMAT_R32G32B32A32_SFLOAT;
+  position_ = image(in, four, read, "soft shadow volumes: positions");
+  normal_ = image(in, four, read, "soft shadow volumes: normals");
+  sums_ = image(in, sum_format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                "soft shadow volumes: sums");
+  const auto buffer = [&](std::size_t bytes, const char* what) {
+    return gpu::Buffer(*in.scene_case->device, pixels(in) * bytes, gpu::Memory::device, what);
+  };
+  sum_buffer_ = buffer(sizeof(Vec2f), "soft shadow volumes: sums");
+  classed_ = buffer(sizeof(Vec4f), "soft shadow volumes: classes of view samples");
+  const std::array views{position_.view(), normal_.view(), tables_.angles(), tables_.areas(),
+                         texture_.view()};
+  for (const int k : {0, 1}) {
+    depth_[k] = image(in, VK_FORMAT_D32_SFLOAT, depth, "soft shadow volumes: depth of a class");
+    depth_buffer_[k] = buffer(sizeof(float), "soft shadow volumes: depth of a class");
+    coverage_[k].bind_images(views), counting_[k].bind_images(views);
   }
+  resolve_pipeline_.bind_images(std::span(views).last(1));
+  sides_.bind_images(std::span(views).first(1)), near_caps_.bind_images(std::span(views).first(1));
   passes.device_pass("view_copy", [&](gpu::Commands& commands) {
-    if (!fits) commands.initialise(position_), commands.initialise(normal_), commands.initialise(sums_);
-    commands.barrier();
+    for (const gpu::Image* i : {&position_, &normal_, &sums_, &depth_[0], &depth_[1]})
+      commands.initialise(*i);
+  });
+}
+
+void WedgePass::begin(const RenderInput& in, gpu::PassRecorder& passes) {
+  ensure(in, passes);
+  passes.device_pass("view_copy", [&](gpu::Commands& commands) {
     commands.copy_buffer_to_image(in.view_samples->position(), position_, VK_IMAGE_ASPECT_COLOR_BIT);
-    commands.copy_buffer_to_image(in.view_samples->geometric_normal(), normal_, VK_IMAGE_ASPECT_COLOR_BIT);
+  });
+}
+
+void WedgePass::classify(const RenderInput& in, const Part& part, gpu::PassRecorder& passes) {
+  ClassifyPush p{};
+  p.light = part.light, p.position = in.view_samples->position().address();
+  p.normal = in.view_samples->geometric_normal().address(), p.classed = classed_.address();
+  p.depth_whole = depth_buffer_[0].address(), p.depth_cut = depth_buffer_[1].address();
+  p.count = pixels(in), p.near_plane = in.scene_case->frame->camera.near_plane;
+  passes.device_pass("classify", [&](gpu::Commands& commands) {
+    commands.dispatch(classify_pipeline_, p, groups(p.count));
+    commands.barrier();
+    commands.copy_buffer_to_image(classed_, normal_, VK_IMAGE_ASPECT_COLOR_BIT);
+    for (const int k : {0, 1})
+      commands.copy_buffer_to_image(depth_buffer_[k], depth_[k], VK_IMAGE_ASPECT_DEPTH_BIT);
   });
 }
 
@@ -199,24 +233,27 @@ void WedgePass::draw_sides(gpu::Commands& commands, const RenderInput& in, const
 
 void WedgePass::draw_wedges(gpu::Commands& commands, const RenderInput& in, const Silhouettes& silhouettes,
                             const Part& part, bool counting) const {
-  const gpu::RenderTarget color{.view = sums_.view(),
-                                .load = counting ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD};
-  const gpu::RenderTarget depth{.view = in.view_samples->depth().view(), .load = VK_ATTACHMENT_LOAD_OP_LOAD};
-  commands.begin_rendering(sums_.desc().width, sums_.desc().height, std::array{color}, &depth,
-                           VK_FORMAT_D32_SFLOAT);
   WedgePush p{};
   p.clip_from_world = to_float(
       in.scene_case->frame->camera.clip_from_world(in.view_samples->width(), in.view_samples->height()));
-  p.pivot = {part.pivot.x, part.pivot.y, part.pivot.z, part.light.center.w}, p.scale_u = part.light.scale_u,
-  p.scale_v = part.light.scale_v;
-  p.wedges = wedges_.address();
-  const gpu::GraphicsPipeline& pipeline = counting ? counting_ : coverage_;
-  if (silhouettes.count() > 0) {
-    commands.bind(pipeline);
-    commands.push(pipeline, &p, sizeof p);
-    commands.draw_indexed(indices_, WEDGE_INDICES * silhouettes.count());
+  p.pivot = {part.pivot.x, part.pivot.y, part.pivot.z, part.light.center.w};
+  p.scale_u = part.light.scale_u, p.scale_v = part.light.scale_v, p.wedges = wedges_.address();
+  for (const int k : {0, 1}) {
+    const bool clear = counting && k == 0;
+    const gpu::RenderTarget color{.view = sums_.view(),
+                                  .load = clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD};
+    const gpu::RenderTarget depth{.view = depth_[k].view(), .load = VK_ATTACHMENT_LOAD_OP_LOAD};
+    const gpu::GraphicsPipeline& pipeline = counting ? counting_[k] : coverage_[k];
+    commands.begin_rendering(sums_.desc().width, sums_.desc().height, std::array{color}, &depth,
+                             VK_FORMAT_D32_SFLOAT);
+    if (silhouettes.count() > 0) {
+      commands.bind(pipeline);
+      commands.push(pipeline, &p, sizeof p);
+      commands.draw_indexed(indices_, WEDGE_INDICES * silhouettes.count());
+    }
+    commands.end_rendering();
+    commands.barrier();
   }
-  commands.end_rendering();
 }
 
 void WedgePass::resolve(const RenderInput& in, const Silhouettes& silhouettes, const Part& part, bool first,
@@ -237,7 +274,7 @@ void WedgePass::resolve(const RenderInput& in, const Silhouettes& silhouettes, c
 void WedgePass::run(const RenderInput& in, const Silhouettes& silhouettes, const Part& part, bool first,
                     gpu::PassRecorder& passes) {
   const bool soft = shape_ != SHAPE_POINT;
-  if (soft) make_wedges(in, silhouettes, part, passes);
+  if (soft) classify(in, part, passes), make_wedges(in, silhouettes, part, passes);
   passes.device_pass("hard_shadow",
                      [&](gpu::Commands& commands) { draw_sides(commands, in, silhouettes, part); });
   if (soft)
@@ -250,6 +287,7 @@ WedgeCounts WedgePass::count(const RenderInput& in, const Silhouettes& silhouett
                              gpu::PassRecorder& passes) {
   WedgeCounts counts;
   if (shape_ == SHAPE_POINT || silhouettes.count() == 0) return counts;
+  classify(in, part, passes);
   make_wedges(in, silhouettes, part, passes);
   std::vector<Vec2f> sums(pixels(in));
   std::vector<Wedge> wedges(silhouettes.count());
@@ -267,7 +305,9 @@ WedgeCounts WedgePass::count(const RenderInput& in, const Silhouettes& silhouett
 }
 
 uint64_t WedgePass::bytes() const {
-  return tables_.bytes() + position_.bytes() + normal_.bytes() + sums_.bytes() + sum_buffer_.bytes() +
+  uint64_t sum = classed_.bytes();
+  for (const int k : {0, 1}) sum += depth_[k].bytes() + depth_buffer_[k].bytes();
+  return sum + tables_.bytes() + position_.bytes() + normal_.bytes() + sums_.bytes() + sum_buffer_.bytes() +
          texture_.bytes() + texels_.bytes() + wedges_.bytes() + indices_.bytes();
 }
 

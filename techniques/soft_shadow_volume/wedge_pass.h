@@ -24,7 +24,7 @@ class WedgePass {
   void set_light(gpu::Device& device, const Light& light, gpu::PassRecorder& passes);
   // Once per frame. Pass "view_copy".
   void begin(const RenderInput& in, gpu::PassRecorder& passes);
-  // One part of the light. Passes "wedges", "hard_shadow", "coverage", "resolve".
+  // One part of the light. Passes "classify", "wedges", "hard_shadow", "coverage", "resolve".
   void run(const RenderInput& in, const Silhouettes& silhouettes, const Part& part, bool first,
            gpu::PassRecorder& passes);
   // Statistics of one part: draws its wedges again.
@@ -33,6 +33,8 @@ class WedgePass {
   uint64_t bytes() const;
 
  private:
+  void ensure(const RenderInput& in, gpu::PassRecorder& passes);
+  void classify(const RenderInput& in, const Part& part, gpu::PassRecorder& passes);
   void make_wedges(const RenderInput& in, const Silhouettes& silhouettes, const Part& part,
                    gpu::PassRecorder& passes);
   void draw_sides(gpu::Commands& commands, const RenderInput& in, const Silhouettes& silhouettes,
@@ -45,8 +47,12 @@ class WedgePass {
   Params params_;
   uint32_t shape_ = 0;
   Tables tables_;
-  gpu::ComputePipeline wedge_pipeline_, resolve_pipeline_;
-  gpu::GraphicsPipeline sides_, near_caps_, coverage_, counting_;
+  gpu::ComputePipeline classify_pipeline_, wedge_pipeline_, resolve_pipeline_;
+  gpu::GraphicsPipeline sides_, near_caps_;
+  // One for each class of view samples: the whole light above the horizon, a part of it.
+  gpu::GraphicsPipeline coverage_[2], counting_[2];
+  gpu::Image depth_[2];
+  gpu::Buffer depth_buffer_[2], classed_;
   gpu::Image position_, normal_, sums_, texture_;
   gpu::Buffer texels_;
   gpu::Buffer sum_buffer_, wedges_, indices_;

@@ -8,7 +8,8 @@
 // centre, if the centre is on its right; and takes it away if it is on its left:
 //   weight * (area of the triangle (centre, A, B) - area of the light in the sector from A to B), both signed.
 // Light points below the horizon of P count for nothing: both areas are clipped by the line where the horizon cuts
-// the light's plane. Deviation: the original leaves the horizon to shading.
+// the light's plane. Deviation: the original leaves the horizon to shading. Define HORIZON (a constant) before: false where
+// the whole light is above it.
 const float pi = 3.14159265358979;
 
 // Of a view sample: what does not depend on the edge.
@@ -20,6 +21,7 @@ struct View {
 
 // The positive share of a triangle, for a linear function with these values at its corners.
 float positive_share(float a, float b, float c) {
+  if (!HORIZON) return 1.0;
   const float lowest = min(a, min(b, c)), highest = max(a, max(b, c)), middle = a + b + c - lowest - highest;
   const float one = highest * highest / max((highest - lowest) * (highest - middle), 1e-38);
   const float two = 1.0 - lowest * lowest / max((highest - lowest) * (middle - lowest), 1e-38);
@@ -121,6 +123,7 @@ struct DiscHorizon {
 };
 
 DiscHorizon disc_horizon(View v) {
+  if (!HORIZON) return DiscHorizon(vec2(1, 0), 1.0, pi);
   const float slope = length(v.horizon.xy);
   DiscHorizon h;
   h.towards = slope > 0.0 ? v.horizon.xy / slope : vec2(1, 0);

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define PENUMBRA_COMPUTE
 #include "techniques/soft_shadow_volume/shaders/buffers.glsl"
+const bool HORIZON = true;
 #include "techniques/soft_shadow_volume/shaders/coverage.glsl"
 layout(local_size_x = WEDGE_GROUP) in;
 layout(constant_id = 0) const uint SHAPE = SHAPE_RECTANGLE;

@@ -112,6 +112,22 @@ struct WedgePush {
   ADDRESS_OF(WedgeArray) wedges;
 };
 
+// Of a view sample: how much of the light is above its horizon.
+CONSTANT CLASS_DARK = 0;
+CONSTANT CLASS_WHOLE = 1;
+CONSTANT CLASS_CUT = 2;
+
+struct ClassifyPush {
+  AreaLight light;
+  ADDRESS_OF(Vec4Array) position;
+  ADDRESS_OF(Vec4Array) normal;
+  ADDRESS_OF(Vec4Array) classed;  // out: normal, class
+  ADDRESS_OF(FloatArray) depth_whole;
+  ADDRESS_OF(FloatArray) depth_cut;
+  uint count;
+  float near_plane;
+};
+
 struct ResolvePush {
   AreaLight light;
   ADDRESS_OF(Vec4Array) position;
@@ -128,7 +144,7 @@ struct ResolvePush {
 #ifdef __cplusplus
 static_assert(sizeof(AreaLight) == 48 && sizeof(Silhouette) == 16 && sizeof(Wedge) == 192);
 static_assert(sizeof(ExtractPush) == 120 && sizeof(WedgesPush) == 120 && sizeof(DrawPush) == 128);
-static_assert(sizeof(WedgePush) == 120 && sizeof(ResolvePush) == 104);
+static_assert(sizeof(WedgePush) == 120 && sizeof(ResolvePush) == 104 && sizeof(ClassifyPush) == 96);
 }  // namespace penumbra::soft_shadow_volume
 #endif
 #endif

@@ -27,7 +27,3 @@ float sector_by_table(vec2 a, vec2 b, bool left) {
                           mix(entry(areas, i + ivec2(0, 1)), entry(areas, i + ivec2(1, 1)), f.x), f.y);
   return swept + turns(from, to, 2.0 * pi, left) / (2.0 * pi) * (disc ? pi : 4.0);
 }
-
-bool above_horizon(View v) {
-  return v.horizon.z >= (disc ? length(v.horizon.xy) : abs(v.horizon.x) + abs(v.horizon.y));
-}

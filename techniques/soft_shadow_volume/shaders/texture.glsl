@@ -61,6 +61,7 @@ vec2 on_horizon(View v) {
 // What p -> q adds to the integral over the part above the horizon of a polygon whose border it is on. Where the border
 // crosses the horizon the polygon is closed along it, by way of `base`.
 float border_part(View v, vec2 base, vec2 p, vec2 q) {
+  if (!HORIZON) return along(p, q);
   const float hp = height(v, p), hq = height(v, q);
   if (max(hp, hq) <= 0.0) return 0.0;
   const vec2 x = p + hp / (hp - hq) * (q - p);
