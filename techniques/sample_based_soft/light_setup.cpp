@@ -95,6 +95,17 @@ void free_space(LightSetup& s, const Light& light, const LightSamples& samples, 
   turned_space(f, center, axes, scale);
 }
 
+void set_scene(FrameConstants& f, const Box& bounds) {
+  const Vec3d middle = 0.5 * (Vec3d(bounds.lo) + Vec3d(bounds.hi)), half = Vec3d(bounds.hi) - middle;
+  const Vec3d at = to_working(f, middle);
+  f.scene_middle = with_w(at);
+  for (int k = 0; k < 3; ++k) {
+    Vec3d side{};
+    side[k] = half[k];
+    f.scene_sides[k] = with_w(to_working(f, middle + side) - at);
+  }
+}
+
 // Bounds of rounding, and of the lists' frustum.
 void set_limits(FrameConstants& f, const Box& bounds) {
   double largest = 0, farthest = 0;
@@ -180,6 +191,7 @@ LightSetup light_setup(const Light& light, const LightSamples& samples, const Bo
                     std::cos(double(light.cone_degrees) * std::numbers::pi / 180));
   is_rectangle(light) ? set_corners(f.light, light) : set_corners(f.light, sample_box(samples));
   set_limits(f, bounds);
+  set_scene(f, bounds);
   place_samples(s, samples);
   s.slack = 2 * relative_offset * bounds.diagonal();
   return s;

@@ -10,6 +10,8 @@ FrameConstants caster_constants() {
   vec4 limits = texel(frame_texels, pad_texel);
   f.pad = limits.x;
   f.near = limits.y;
+  f.scene_middle = texel(frame_texels, scene_texel);
+  [[unroll]] for (uint k = 0u; k < 3u; k++) f.scene_sides[k] = texel(frame_texels, scene_texel + 1u + k);
   return f;
 }
 

@@ -32,6 +32,16 @@ uint silhouettes(uint t) {
   return bits;
 }
 
+// The whole scene is on the side that the light sees, as with a ground: nothing is behind that could be hidden. What is
+// behind by no more than rounding is nearer than the offset of P'.
+bool hides_nothing(FrameConstants f, uint facing, vec3 a, vec3 b, vec3 c) {
+  vec3 n = cross(b - a, c - a) * (facing == 2u ? -1.0 : 1.0);
+  float reach = 0.0;
+  [[unroll]] for (uint k = 0u; k < 3u; k++) reach += abs(dot(n, f.scene_sides[k].xyz));
+  float least = dot(n, f.scene_middle.xyz - a) - reach;
+  return facing != 0u && least > -4.0 * f.pad * length(n);
+}
+
 void store_box(Vec4s boxes, uint at, vec3 lo, vec3 hi, float last) {
   boxes.at[2u * at] = vec4(lo, hi.x);
   boxes.at[2u * at + 1u] = vec4(hi.yz, last, 0.0);
@@ -53,6 +63,7 @@ void main() {
   bool listed = casts && (slot >= pc.block_slots || (REGULAR && lo.z <= 0.0));
   bool in_block = casts && !listed;
   uint edges = SILHOUETTES && casts ? silhouettes(t) : 0u;
+  if (SILHOUETTES) edges = hides_nothing(f, facing, a, b, c) ? 0u : edges;
   if (SILHOUETTES && casts && facing == 0u && lo.z <= f.light_hi.z + f.near) atomicAdd(pc.header.h.crossing, 1u);
   if (slot < pc.slots) {
     // What neither the blocks nor the list holds lies beyond every view sample.

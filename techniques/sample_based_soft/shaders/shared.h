@@ -28,12 +28,14 @@ struct FrameConstants {
   float near;                           // what is nearer to the light has no place in the lists' frustum
   float widest;                         // largest |u| and |v| that a fitted window covers
   float farthest;                       // where no plane is fitted: no view sample is farther from the light
+  // The scene's bounds, working space: their middle, and half of each side.
+  PENUMBRA_VEC4 scene_middle, scene_sides[3];
 };
 
 // Places in FrameConstants, for shaders that fetch them as texels.
 const PENUMBRA_UINT light_lo_texel = 13, light_hi_texel = 14, first_texel = 15, step_u_texel = 16,
                     step_v_texel = 17, cone_texel = 18, apex_texel = 19, front_texel = 20, eye_texel = 21,
-                    window_texel = 22, pad_texel = 23;
+                    window_texel = 22, pad_texel = 23, scene_texel = 24;
 
 // Lists come in square tiles of lists, tile by tile; the last list holds what lies outside the frustum.
 const PENUMBRA_UINT tile_side = 8, tile_lists = 64;
@@ -60,15 +62,15 @@ struct Header {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameConstants) == 208 + 10 * 16 + 16 &&
-              offsetof(FrameConstants, pad) == 16 * pad_texel);
+static_assert(sizeof(FrameConstants) == 208 + 15 * 16 && offsetof(FrameConstants, pad) == 16 * pad_texel);
 static_assert(offsetof(FrameConstants, light_lo) == 16 * light_lo_texel &&
               offsetof(FrameConstants, first) == 16 * first_texel &&
               offsetof(FrameConstants, cone) == 16 * cone_texel &&
               offsetof(FrameConstants, apex) == 16 * apex_texel &&
               offsetof(FrameConstants, front) == 16 * front_texel &&
               offsetof(FrameConstants, eye) == 16 * eye_texel &&
-              offsetof(FrameConstants, window) == 16 * window_texel);
+              offsetof(FrameConstants, window) == 16 * window_texel &&
+              offsetof(FrameConstants, scene_middle) == 16 * scene_texel);
 static_assert(sizeof(Header) == 80 && offsetof(Header, lo) == 32 && offsetof(Header, tests) == 56);
 }  // namespace penumbra::sample_based_soft
 #endif
