@@ -59,7 +59,7 @@ void DeviceTree::allocate(gpu::Device& device, uint32_t branching, uint64_t node
 void DeviceTree::copy_to_images(gpu::PassRecorder& passes) {
   const gpu::Device& device = passes.device();
   const uint64_t most = uint64_t{device.caps().max_image_2d} * row_bytes;
-  if (!device.info().software || tree_.bytes() > most || line_space_.bytes() > most) {
+  if (refuse_images_ || !device.info().software || tree_.bytes() > most || line_space_.bytes() > most) {
     tree_image_ = {}, line_space_image_ = {};
     return;
   }

@@ -23,6 +23,8 @@ class DeviceTree {
   Pools download(const Grid& grid, gpu::PassRecorder& passes) const;
 
   // Pools are read from images as well, where that is faster (see shaders/words.glsl) and they fit.
+  // Never, for tests of the other way.
+  void refuse_images() { refuse_images_ = true; }
   bool has_images() const { return static_cast<bool>(line_space_image_); }
   const gpu::Image& tree_image() const { return tree_image_; }
   const gpu::Image& line_space_image() const { return line_space_image_; }
@@ -51,6 +53,7 @@ class DeviceTree {
   gpu::Buffer tree_, nodes_, line_space_;
   gpu::Image tree_image_, line_space_image_;
   std::vector<uint32_t> level_begin_;
+  bool refuse_images_ = false;
 };
 
 }  // namespace penumbra::line_space

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "techniques/line_space/device_tracer.h"
 #include "techniques/line_space/device_tree.h"
 #include "techniques/line_space/host_tracer.h"
 #include "tests/support/brute_force.h"
@@ -435,6 +436,29 @@ TEST(LineSpace, DeviceAndHostGiveTheSamePictureForEveryLight) {
     EXPECT_EQ(a.mask, b.mask);
     for (std::size_t i = 0; i < stage.pixels(); ++i) EXPECT_NEAR(a.visibility[i], b.visibility[i], 1e-6);
   }
+}
+
+TEST(LineSpace, PoolsReadByAddressGiveThePictureOfPoolsReadFromImages) {
+  Stage stage(scene_of(testing::rectangle_light({1, 4, 2}, {0, 0, 0}, 1.5f, 1)), 61, 47);
+  stage.light_samples = make_light_samples(stage.frame.light, {7, 6});
+  const Rendered expected = stage.render(info, {{"branching", int64_t{5}}, {"depth", int64_t{3}}});
+  const Geometry& g = stage.frame.geometry;
+  const Tree host(g, select_casters(g, faces_before_light(g.bounds, stage.light_samples)), params_of(5, 3));
+  DeviceTree tree;
+  tree.refuse_images();
+  tree.upload(host.pools, stage.passes);
+  ASSERT_FALSE(tree.has_images());
+  DeviceTracer tracer;
+  tracer.setup(device(), 5, 3);
+  RenderInput in;
+  in.scene_case = &stage.the_case, in.view_samples = &stage.view;
+  in.device = {&stage.visibility, &stage.mask};
+  std::vector<uint32_t> mask(expected.mask.size(), 0);
+  gpu::upload(stage.passes, "clear", stage.mask, mask.data(), mask.size() * 4);
+  tracer.run(in, host.grid, tree, stage.passes);
+  gpu::download(stage.passes, "download", stage.mask, mask.data(), mask.size() * 4);
+  stage.passes.finish();
+  EXPECT_EQ(mask, expected.mask);
 }
 
 // Every bit of a picture that is clear is clear for the oracle, or only the start node blocks it.
