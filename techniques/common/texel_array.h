@@ -1,6 +1,6 @@
-// An array of vec4 (or, with another format of 16 bytes, uvec4) that shaders read by texelFetch: a two-dimensional image of RGBA32F with rows of texel_row
-// entries. On lavapipe a fetch gathers eight lanes at once, where a load by buffer address is a loop over
-// lanes and components, five times slower.
+// An array of vec4 (or, with another format of 16 bytes, uvec4) that shaders read by texelFetch: a
+// two-dimensional image of RGBA32F with rows of texel_row entries. On lavapipe a fetch gathers eight lanes at
+// once, where a load by buffer address is a loop over lanes and components, five times slower.
 #pragma once
 #include "gpu/buffer.h"
 #include "gpu/commands.h"

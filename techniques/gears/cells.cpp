@@ -58,8 +58,8 @@ void Cells::build(FrameState& state, const Geometry& geometry, gpu::PassRecorder
 
 void Cells::bind(const FrameState& state) {
   walker_.bind(state, {});
-  const VkImageView arrays[] = {state.frame_texels.view(), state.origin_texels.view(),
-                                state.normal_texels.view()};
+  const VkImageView arrays[] = {state.frame_texels.view(), state.view_texels.origin.view(),
+                                state.view_texels.normal.view()};
   for (gpu::ComputePipeline* p : {&fit_[0], &fit_[1], &bin_samples_[0], &bin_samples_[1]})
     p->bind_images(arrays);
 }

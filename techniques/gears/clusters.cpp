@@ -38,7 +38,7 @@ void Clusters::build(FrameState& state, const Geometry& geometry, gpu::PassRecor
 void Clusters::bind(const FrameState& state) {
   const VkImageView boxes[] = {box_texels_.view()};
   walker_.bind(state, boxes);
-  groups_.bind(state.frame_texels.view(), state.origin_texels.view(), state.normal_texels.view());
+  groups_.bind(state.frame_texels.view(), state.view_texels.origin.view(), state.view_texels.normal.view());
 }
 
 void Clusters::prepare(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {

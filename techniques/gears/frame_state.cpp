@@ -31,8 +31,7 @@ void FrameState::set_light(const Case& c, gpu::PassRecorder& passes) {
   gpu::ensure(header, *device, sizeof(Header), gpu::Memory::device, "counts");
   gpu::ensure(header_host, *device, sizeof(Header), gpu::Memory::read_back, "counts");
   frame_texels.ensure(*device, passes, sizeof(FrameConstants) / sizeof(Vec4f), "the frame's constants");
-  for (TexelArray* t : {&origin_texels, &position_texels, &normal_texels})
-    t->ensure(*device, passes, pixels(), "view samples for fetching");
+  view_texels.ensure(*device, passes, pixels());
   if (!layout.packed)
     gpu::ensure(walked, *device, std::size_t{pixels()} * static_cast<std::size_t>(layout.words) * 4,
                 gpu::Memory::device, "the masks as walked");
@@ -56,10 +55,6 @@ uint64_t FrameState::masks_address(const RenderInput& in) const {
 }
 
 void FrameState::begin(const RenderInput& in, gpu::PassRecorder& passes) {
-  constants.origin = in.view_samples->origin().address();
-  constants.position = in.view_samples->position().address();
-  constants.normal = in.view_samples->geometric_normal().address();
-  constants.light_samples = light_samples.address();
   passes.device_pass("begin", [&](gpu::Commands& commands) {
     commands.update(frame, &constants, sizeof constants);
     commands.fill(header, 0);
@@ -69,9 +64,7 @@ void FrameState::begin(const RenderInput& in, gpu::PassRecorder& passes) {
     if (walk_resolves()) commands.fill(*in.device.visibility, 0, 0, uint64_t{pixels()} * 4);
     commands.barrier();
     frame_texels.copy_from(commands, frame, sizeof(FrameConstants) / sizeof(Vec4f));
-    origin_texels.copy_from(commands, in.view_samples->origin(), pixels());
-    position_texels.copy_from(commands, in.view_samples->position(), pixels());
-    normal_texels.copy_from(commands, in.view_samples->geometric_normal(), pixels());
+    view_texels.copy_from(commands, *in.view_samples, pixels());
   });
 }
 
@@ -110,10 +103,8 @@ Header FrameState::read_header(gpu::PassRecorder& passes) {
 }
 
 uint64_t FrameState::bytes() const {
-  uint64_t sum = 0;
-  for (const TexelArray* t :
-       {&frame_texels, &origin_texels, &position_texels, &normal_texels, &triangle_texels})
-    sum += t->bytes();
+  uint64_t sum = view_texels.bytes();
+  for (const TexelArray* t : {&frame_texels, &triangle_texels}) sum += t->bytes();
   for (const gpu::Buffer* b : {&frame, &header, &header_host, &light_samples, &weights, &order, &triangles,
                                &list, &slots, &resume, &walked})
     sum += b->bytes();

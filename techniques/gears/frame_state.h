@@ -5,7 +5,7 @@
 #include "gpu/pass_recorder.h"
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
-#include "techniques/common/texel_array.h"
+#include "techniques/common/view_texels.h"
 #include "techniques/gears/light_setup.h"
 #include "techniques/gears/params.h"
 #include "techniques/gears/shaders/constants.h"
@@ -30,7 +30,8 @@ struct FrameState {
   gpu::Buffer light_samples, weights;  // world; uploaded when the light changes
   gpu::Buffer order, triangles, list;  // slots to triangles; 3 vec4 per slot; slots for the list
   // For fetching: the frame's constants, P', P and Ng per pixel, the triangles again.
-  TexelArray frame_texels, origin_texels, position_texels, normal_texels, triangle_texels;
+  TexelArray frame_texels, triangle_texels;
+  ViewTexels view_texels;
   gpu::Buffer slots, resume;  // view samples of groups; groups to go on with
   gpu::Buffer walked;         // masks as walked, where not packed
   uint32_t tree_slots = 0, slot_count = 0;

@@ -41,8 +41,8 @@ void Walker::setup(const FrameState& state, gpu::Spirv grid, gpu::Spirv any, uin
 }
 
 void Walker::bind(const FrameState& state, std::span<const VkImageView> more) {
-  views_ = {state.origin_texels.view(), state.position_texels.view(), state.normal_texels.view(),
-            state.triangle_texels.view()};
+  views_ = {state.view_texels.origin.view(), state.view_texels.position.view(),
+            state.view_texels.normal.view(), state.triangle_texels.view()};
   views_.insert(views_.end(), more.begin(), more.end());
   for (auto& [variant, p] : pipelines_) bind(state, p);
 }

@@ -29,8 +29,7 @@ void FrameState::set_light(const Case& c, gpu::PassRecorder& passes) {
   gpu::ensure(header, *device, sizeof(Header), gpu::Memory::device, "counts");
   gpu::ensure(header_host, *device, sizeof(Header), gpu::Memory::read_back, "counts");
   frame_texels.ensure(*device, passes, sizeof(FrameConstants) / sizeof(Vec4f), "the frame's constants");
-  for (TexelArray* t : {&origin_texels, &position_texels, &normal_texels})
-    t->ensure(*device, passes, pixels(), "view samples for fetching");
+  view_texels.ensure(*device, passes, pixels());
   if (!light.layout.packed)
     gpu::ensure(walked, *device, std::size_t{pixels()} * static_cast<std::size_t>(light.layout.words) * 4,
                 gpu::Memory::device, "the masks as walked");
@@ -56,9 +55,7 @@ void FrameState::begin(const RenderInput& in, gpu::PassRecorder& passes) {
     commands.barrier();
     commands.fill(header, 0xffffffffU, offsetof(Header, lo), 5 * 4);
     frame_texels.copy_from(commands, frame, sizeof(FrameConstants) / sizeof(Vec4f));
-    origin_texels.copy_from(commands, in.view_samples->origin(), pixels());
-    position_texels.copy_from(commands, in.view_samples->position(), pixels());
-    normal_texels.copy_from(commands, in.view_samples->geometric_normal(), pixels());
+    view_texels.copy_from(commands, *in.view_samples, pixels());
   });
 }
 
@@ -70,10 +67,8 @@ Header FrameState::read_header(gpu::PassRecorder& passes) {
 }
 
 uint64_t FrameState::bytes() const {
-  uint64_t sum = 0;
-  for (const TexelArray* t :
-       {&frame_texels, &sample_texels, &origin_texels, &position_texels, &normal_texels})
-    sum += t->bytes();
+  uint64_t sum = view_texels.bytes();
+  for (const TexelArray* t : {&frame_texels, &sample_texels}) sum += t->bytes();
   for (const gpu::Buffer* b : {&frame, &header, &header_host, &light_samples, &weights, &walked})
     sum += b->bytes();
   return sum;

@@ -4,7 +4,7 @@
 #include "gpu/pass_recorder.h"
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
-#include "techniques/common/texel_array.h"
+#include "techniques/common/view_texels.h"
 #include "techniques/sample_based_soft/light_setup.h"
 #include "techniques/sample_based_soft/params.h"
 #include "techniques/sample_based_soft/shaders/constants.h"
@@ -22,7 +22,8 @@ struct FrameState {
   LightSetup light;
 
   gpu::Buffer frame, header, header_host, light_samples, weights;
-  TexelArray frame_texels, sample_texels, origin_texels, position_texels, normal_texels;
+  TexelArray frame_texels, sample_texels;
+  ViewTexels view_texels;
   gpu::Buffer walked;  // masks as walked, where they are not packed
 
   uint32_t pixels() const { return width * height; }

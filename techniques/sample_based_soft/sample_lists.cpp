@@ -37,7 +37,7 @@ void SampleLists::setup(const FrameState& state) {
 void SampleLists::bind(const FrameState& state) {
   const VkImageView views[] = {state.frame_texels.view()};
   project_.bind_images(views);
-  groups_.bind(state.frame_texels.view(), state.origin_texels.view(), state.normal_texels.view());
+  groups_.bind(state.frame_texels.view(), state.view_texels.origin.view(), state.view_texels.normal.view());
 }
 
 uint32_t SampleLists::group_capacity(const FrameState& state) const {

@@ -39,8 +39,9 @@ void SoftPass::setup(const FrameState& state, const Casters& casters) {
 }
 
 void SoftPass::bind(const FrameState& state, const Casters& casters, const PlaneTable& table) {
-  views_ = {state.frame_texels.view(),  state.origin_texels.view(), state.position_texels.view(),
-            state.normal_texels.view(), casters.triangles().view(), casters.regions().view()};
+  views_ = {state.frame_texels.view(),         state.view_texels.origin.view(),
+            state.view_texels.position.view(), state.view_texels.normal.view(),
+            casters.triangles().view(),        casters.regions().view()};
   if (!state.light.layout.grid) views_.insert(views_.end(), {state.sample_texels.view(), table.view()});
   for (auto& [variant, p] : pipelines_) p.bind_images(views_);
 }

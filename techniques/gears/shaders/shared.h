@@ -20,25 +20,19 @@ struct FrameConstants {
   PENUMBRA_VEC4 light_lo, light_hi;     // box of all light samples, working space; w = 0: of directions
   PENUMBRA_VEC4 first, step_u, step_v;  // regular grid, world: sample (i, j) = first + i step_u + j step_v
   PENUMBRA_VEC4 camera_x, camera_y,
-      camera_z;                    // grid camera C: rows for working - camera_eye; its corners of the light
-  PENUMBRA_VEC4 camera_eye;        // w = 1: perspective, 0: parallel
-  PENUMBRA_ADDRESS(Vec4s) origin;  // per pixel: P' (w = 0: no view sample), P, Ng
-  PENUMBRA_ADDRESS(Vec4s) position;
-  PENUMBRA_ADDRESS(Vec4s) normal;
-  PENUMBRA_ADDRESS(Vec4s) light_samples;  // world
-  PENUMBRA_VEC4 cone;                     // spot light: axis, cosine of the half angle; w = -2: none
-  PENUMBRA_VEC4 apex;                     // the light's centre, world
-  PENUMBRA_VEC4 front;                    // w = 1: shines only to the side that xyz points to
-  float pad;                              // working space: bound of a coordinate's rounding error
-  float near;                             // grid camera: what is nearer than this has no place on the grid
-  float grid_unit;                        // grid camera: typical size of a coordinate on its image plane
+      camera_z;              // grid camera C: rows for working - camera_eye; its corners of the light
+  PENUMBRA_VEC4 camera_eye;  // w = 1: perspective, 0: parallel
+  PENUMBRA_VEC4 cone;        // spot light: axis, cosine of the half angle; w = -2: none
+  PENUMBRA_VEC4 apex;        // the light's centre, world
+  PENUMBRA_VEC4 front;       // w = 1: shines only to the side that xyz points to
+  float pad;                 // working space: bound of a coordinate's rounding error
+  float near;                // grid camera: what is nearer than this has no place on the grid
+  float grid_unit;           // grid camera: typical size of a coordinate on its image plane
   PENUMBRA_UINT paper_extrusion;
 };
 
 // Places in FrameConstants, for shaders that fetch them as texels.
-const PENUMBRA_UINT light_lo_texel = 13, light_hi_texel = 14, first_texel = 15, step_u_texel = 16,
-                    step_v_texel = 17, camera_texel = 18, cone_texel = 24, apex_texel = 25, front_texel = 26,
-                    pad_texel = 27;  // from camera_texel on: camera_x, _y, _z, _eye
+const PENUMBRA_UINT camera_texel = 18, pad_texel = 25;  // from camera_texel on: camera_x, _y, _z, _eye
 
 // Counts that the device makes and the host reads.
 struct Header {
@@ -56,17 +50,9 @@ struct Header {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameConstants) == 208 + 12 * 16 + 32 + 16 && offsetof(FrameConstants, pad) == 432);
-static_assert(offsetof(FrameConstants, light_lo) == 16 * light_lo_texel &&
-              offsetof(FrameConstants, light_hi) == 16 * light_hi_texel);
-static_assert(offsetof(FrameConstants, first) == 16 * first_texel &&
-              offsetof(FrameConstants, step_u) == 16 * step_u_texel &&
-              offsetof(FrameConstants, step_v) == 16 * step_v_texel &&
-              offsetof(FrameConstants, camera_x) == 16 * camera_texel &&
+static_assert(sizeof(FrameConstants) == 208 + 12 * 16 + 16);
+static_assert(offsetof(FrameConstants, camera_x) == 16 * camera_texel &&
               offsetof(FrameConstants, camera_eye) == 16 * (camera_texel + 3) &&
-              offsetof(FrameConstants, cone) == 16 * cone_texel &&
-              offsetof(FrameConstants, apex) == 16 * apex_texel &&
-              offsetof(FrameConstants, front) == 16 * front_texel &&
               offsetof(FrameConstants, pad) == 16 * pad_texel);
 static_assert(sizeof(Header) == 80 && offsetof(Header, nodes) == 32 && offsetof(Header, grid_lo) == 64);
 }  // namespace penumbra::gears

@@ -14,7 +14,7 @@ vec3 group_lo, group_hi;
 uint mask[WORDS];
 float pad, table_radius;   // table_radius: of the samples about the centre
 vec3 light_middle, light_extent;
-vec3 grow_lo, grow_hi;      // from the group's box to the light's, per unit of t
+#include "techniques/common/shaders/hull_of_boxes.glsl"
 uint first_word;
 
 void begin_light(FrameConstants f, uint word) {
@@ -50,22 +50,9 @@ void block_horizon(vec3 P, vec3 n, FrameConstants f) {
 void begin_mask() {}
 void update_open() {}
 
-// The hull of the group's box and the light's is the union of the boxes between them, box(t) for t in [0, 1]; a box
-// that meets it meets box(t) in all axes for one t: six linear conditions on t.
 bool touches(vec3 lo, vec3 hi, out uint rect) {
-  float t0 = 0.0, t1 = 1.0;
-  vec3 need_hi = lo - group_hi - pad, need_lo = hi - group_lo + pad;   // grow_hi t >= need_hi, grow_lo t <= need_lo
-  [[unroll]] for (int k = 0; k < 3; k++) {
-    float g = grow_hi[k], r = need_hi[k] / (abs(g) < 1e-30 ? 1e-30 : g);
-    t0 = upper(t0, g >= -1e-30 ? r : t0);
-    t1 = lower(t1, g < -1e-30 ? r : t1);
-    g = grow_lo[k];
-    r = need_lo[k] / (abs(g) < 1e-30 ? 1e-30 : g);
-    t1 = lower(t1, g >= -1e-30 ? r : t1);
-    t0 = upper(t0, g < -1e-30 ? r : t0);
-  }
   rect = 0u;
-  return t0 <= t1 + 1e-5 * (1.0 + abs(t1)) && lo.x <= hi.x;
+  return meets_hull(lo, hi, 1.0) && lo.x <= hi.x;
 }
 
 bool separates(vec3 a, vec3 b, vec3 c) { return true; }

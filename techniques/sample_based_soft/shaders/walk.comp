@@ -113,7 +113,7 @@ bool is_full() {
 // Every view sample of the group sees no light sample any more.
 bool all_blocked() {
   bool blocked = is_full() || (HARD && hidden_);
-  return subgroupAll(blocked) && COUNTING != 2u;
+  return ballot(!blocked) == 0u && COUNTING != 2u;
 }
 
 // The first light sample that is above the horizon.
@@ -158,7 +158,7 @@ void rasterise_slots(uint slot, bool wanted, bool listed) {
   if (CULL_PLANES || listed) apart = between(a.xyz, b, c);
   bool meant = listed || a.w == 0.0;
   bool hit = touched && wanted && apart && meant;
-  uint left = subgroupBallot(hit).x;
+  uint left = ballot(hit);
   if (left == 0u) return;
 #ifndef GRID
   // Evaluating all samples is dear: first, cheaply, which triangles can hide any from any view sample.
@@ -171,7 +171,7 @@ void rasterise_slots(uint slot, bool wanted, bool listed) {
     vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
     bool open_ = COUNTING == 2u || !is_full();
     bool may = may_hide(A, B, C) && open_;
-    bool any_may = subgroupAny(may);
+    bool any_may = ballot(may) != 0u;
     kept |= any_may ? 1u << l : 0u;
     turns++;
   } while (sieve != 0u);
@@ -227,7 +227,7 @@ uint walk(uint list, uint done) {
         uint rect;
         bool touched = touches(a.xyz, vec3(a.w, b.xy), rect);
         bool hit = touched && wanted;
-        uint left = subgroupBallot(hit).x;
+        uint left = ballot(hit);
         uint next = done + SG;
         if (left != 0u) {
           do {
