@@ -6,6 +6,7 @@
 #include "techniques/line_space/host_tracer.h"
 #include "techniques/line_space/line_space.h"
 #include "tests/support/brute_force.h"
+#include "tests/support/host_view.h"
 
 namespace penumbra::test {
 
