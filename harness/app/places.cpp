@@ -10,7 +10,7 @@ namespace penumbra {
 namespace fs = std::filesystem;
 namespace {
 
-// All *.json below `folder`, as names relative to it without the extension.
+// All sweeps and scenes below `folder`, as names relative to it without the extension.
 void collect(const fs::path& folder, std::vector<std::string>& names,
              const std::vector<std::string>& left_out) {
   std::error_code error;
@@ -18,7 +18,8 @@ void collect(const fs::path& folder, std::vector<std::string>& names,
     if (it.depth() == 0 && it->is_directory() &&
         std::ranges::find(left_out, it->path().filename().string()) != left_out.end())
       it.disable_recursion_pending();
-    else if (it->is_regular_file() && it->path().extension() == ".json")
+    else if (it->is_regular_file() && it->path().extension() == ".json" &&
+             it->path().filename() != "paper.json")  // what scripts/reproduce reads beside its configs
       names.push_back(it->path().lexically_relative(folder).replace_extension().generic_string());
   }
 }
