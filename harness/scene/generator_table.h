@@ -31,5 +31,7 @@ inline constexpr int generator_version = 1;
 std::vector<Generator> shape_generators();    // plane, box, sphere, torus, torus_knot, columns, city
 std::vector<Generator> natural_generators();  // hair_ball, bird_nest, ring_field
 std::vector<Generator> study_generators();    // study_*
+Generator church_generator();
+Generator atrium_generator();
 
 }  // namespace penumbra

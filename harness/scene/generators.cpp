@@ -13,7 +13,9 @@ namespace {
 const std::vector<Generator>& table() {
   static const std::vector<Generator> all = [] {
     std::vector<Generator> list = shape_generators();
-    for (auto more : {natural_generators(), study_generators()})
+    for (const auto& more :
+         {natural_generators(), std::vector<Generator>{church_generator(), atrium_generator()},
+          study_generators()})
       list.insert(list.end(), more.begin(), more.end());
     return list;
   }();

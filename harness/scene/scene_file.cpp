@@ -32,8 +32,20 @@ void check_unique(const JsonNode& node, const List& list, const std::string& nam
     if (entry.name == name) node.complain(fmt::format("the name '{}' is taken already.", name));
 }
 
+Subdivision read_subdivision(const JsonNode& node, bool moves) {
+  node.allow_only({"loop", "target_triangles"}, "a subdivision");
+  if (node.members().empty()) node.fail("\"loop\", \"target_triangles\" or both");
+  if (moves) node.complain("a mesh that plays its keyframes cannot be subdivided.");
+  Subdivision how;
+  if (const auto loop = node.find("loop")) how.loop = static_cast<int>(loop->integer(0, 6));
+  if (const auto target = node.find("target_triangles"))
+    how.target_triangles = static_cast<std::size_t>(target->integer(1, 1 << 28));
+  return how;
+}
+
 MeshSource read_mesh(const std::string& name, const JsonNode& node) {
-  node.allow_only({"file", "generator", "params", "fit", "normals", "flip", "keyframes"}, "a mesh");
+  node.allow_only({"file", "generator", "params", "fit", "normals", "flip", "keyframes", "subdivide"},
+                  "a mesh");
   MeshSource mesh;
   mesh.name = name;
   mesh.place = fmt::format("{}: {}", node.location(), node.pointer());
@@ -65,6 +77,7 @@ MeshSource read_mesh(const std::string& name, const JsonNode& node) {
     mesh.keyframes = static_cast<int>(keys->require("count", "keyframes of a mesh").integer(1, 10000));
     if (const auto each = keys->find("frames_each")) mesh.frames_per_keyframe = each->number(1e-3, 1e6);
   }
+  if (const auto how = node.find("subdivide")) mesh.subdivide = read_subdivision(*how, mesh.keyframes > 1);
   return mesh;
 }
 

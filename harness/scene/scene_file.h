@@ -12,6 +12,7 @@
 #include "scene/camera.h"
 #include "scene/generators.h"
 #include "scene/light.h"
+#include "scene/subdivision.h"
 
 namespace penumbra {
 
@@ -28,6 +29,7 @@ struct MeshSource {
   std::string generator;
   std::vector<GeneratorArgument> arguments;
   std::optional<Fit> fit;
+  Subdivision subdivide;  // before the fit
   bool recompute_normals = false;
   bool flip = false;                      // turns every triangle round: rooms seen from inside
   int first_keyframe = 0, keyframes = 1;  // of a file that has them

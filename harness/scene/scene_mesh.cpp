@@ -77,6 +77,17 @@ void add_keyframe(SceneMesh& out, const MeshSource& source, const std::filesyste
   out.key_normals.push_back(std::move(key.normals));
 }
 
+// What was dropped is told of the source, the edges of what is drawn.
+void subdivide(SceneMesh& out, const MeshSource& source) {
+  out.mesh = subdivided(out.mesh, source.subdivide, source.place);
+  MeshHygiene fine = clean(out.mesh, source.place + ": " + out.origin + ", subdivided");
+  fine.triangles_in = out.hygiene.triangles_in;
+  fine.dropped_index = out.hygiene.dropped_index;
+  fine.dropped_not_finite = out.hygiene.dropped_not_finite;
+  fine.dropped_degenerate += out.hygiene.dropped_degenerate;
+  out.hygiene = fine;
+}
+
 }  // namespace
 
 SceneMesh load_scene_mesh(const MeshSource& source, const std::vector<std::filesystem::path>& folders) {
@@ -88,6 +99,7 @@ SceneMesh load_scene_mesh(const MeshSource& source, const std::vector<std::files
   const std::size_t vertices_in_file = out.mesh.positions.size();
   const CleanResult cleaned = clean_tracked(out.mesh, source.place + ": " + out.origin);
   out.hygiene = cleaned.hygiene;
+  if (source.subdivide.any()) subdivide(out, source);
 
   FitTransform fit;
   if (source.fit) {

@@ -48,9 +48,11 @@ json generator_mesh(const GeneratorInfo& g, const json& common) {
 }
 
 json mesh() {
-  const json common = {{"fit", object({{"size", above_zero()}, {"ground", number()}}, {"size"})},
-                       {"normals", choice({"file", "recompute"})},
-                       {"flip", {{"type", "boolean"}}}};
+  const json common = {
+      {"fit", object({{"size", above_zero()}, {"ground", number()}}, {"size"})},
+      {"normals", choice({"file", "recompute"})},
+      {"flip", {{"type", "boolean"}}},
+      {"subdivide", object({{"loop", integer(0, 6)}, {"target_triangles", integer(1, 1 << 28)}})}};
   json file = common;
   file["file"] = text();
   file["keyframes"] =
