@@ -7,6 +7,7 @@ from reproducing.reading import nearest, one_of
 NEEDS = {
     "trend": ("along", "direction"),
     "rank": (),
+    "near": (),
     "slope": ("along", "fit"),
     "ratio": ("of",),
     "bound": ("cell",),
@@ -17,7 +18,7 @@ OWN = {  # keys that only these kinds have
     "along": ("trend", "slope", "optimum"),
     "min": ("trend", "rank"),
     "fit": ("slope",),
-    "within": ("slope", "optimum"),
+    "within": ("near", "slope", "optimum"),
     "of": ("ratio",),
     "cell": ("bound",),
     "at_least": ("ratio", "bound"),

@@ -160,6 +160,19 @@ class Judge:
             f"{len(pairs)} figures", 1.0, float(rank_correlation(paper, [c.value for _, c in pairs])), drawn, lambda v: v >= least
         )
 
+    def near(self):
+        factor = max(self.claim.get("within", 2), 1)
+        self.condition = f"within a factor of {factor:g} of the source's figure"
+        for row in self.rows:
+            for column in self.columns:
+                said, cell = self.paper(row, column), self.cell(row, column)
+                label = f"{row['label']}, {column['label']}"
+                if said is None or cell.value is None:
+                    yield Line(label, said, reason=cell.reason or "the source has no figure for it")
+                    continue
+                low, high = sorted((said / factor, said * factor))
+                yield judged(label, said, cell.value, cell.draws, lambda v, low=low, high=high: low <= v <= high)
+
     def slope(self):
         factor = max(self.claim.get("within", 2), 1)
         power = self.claim["fit"] == "power"

@@ -8,7 +8,7 @@ from reproducing.reading import BadInput, nearest, one_of, read_nodes, read_plai
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAPERS = ROOT / "configs" / "papers"
-KINDS = ("trend", "rank", "slope", "ratio", "bound", "optimum")
+KINDS = ("trend", "rank", "near", "slope", "ratio", "bound", "optimum")
 
 CELL = Object(
     {
@@ -55,7 +55,7 @@ CLAIM = Object(
         "direction": Text("trend: the figure rises or falls along", ("rises", "falls")),
         "min": Number("trend, rank: least rank correlation (default 0.8, 0.5)", -1, 1),
         "fit": Text("slope: exponent of a power law, or a straight line's change per unit, relative to its middle", ("power", "line")),
-        "within": Number("slope: factor between the paper's and ours (default 2); optimum: columns aside (default 0)", 0),
+        "within": Number("near, slope: factor between the source's and ours (default 2); optimum: columns aside (default 0)", 0),
         "of": List(CELL, "ratio: the first divided by the second", 2, 2),
         "cell": CELL,
         "at_least": Number("ratio, bound"),
