@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/describe_scene.h"
 #include "compare/thresholds.h"
 #include "config/plan.h"
 #include "config/schema.h"
@@ -85,18 +86,21 @@ void print_schema(const std::string& wanted, const Registry& registry) {
 
 void add_describe(CLI::App& app, Context& context) {
   struct Options {
-    std::string technique, schema;
+    std::string technique, scene, schema;
     bool as_json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("describe", "Parameters, lights and sources of a technique");
+  CLI::App* sub =
+      app.add_subcommand("describe", "Parameters, lights and sources of a technique; or what a scene holds");
   sub->add_option("technique", options->technique, "Its name");
   sub->add_flag("--json", options->as_json, "As a JSON object");
+  sub->add_option("--scene", options->scene, "A scene's name or file: its meshes, lights and cameras");
   sub->add_option("--schema", options->schema,
                   "Print the JSON Schema of sweep configs (sweep), scene files (scene) or thresholds of "
                   "`compare` (thresholds)");
   sub->callback([options, &context] {
     if (!options->schema.empty()) return print_schema(options->schema, context.registry);
+    if (!options->scene.empty()) return describe_scene(context, options->scene, options->as_json);
     if (options->technique.empty())
       throw InputError("describe: found no technique, expected a name; see `penumbra list techniques`.");
     const TechniqueInfo& info = find_technique(context.registry, options->technique);

@@ -92,6 +92,16 @@ class Listings(Folder):
     def test_the_program_finds_its_files_from_any_folder(self):
         self.assertEqual(self.accepted("list", "scenes", cwd=self.folder), self.accepted("list", "scenes", cwd=SOURCE))
 
+    def test_scenes_are_described(self):
+        scene = json.loads(self.accepted("describe", "--scene", "columns", "--json"))
+        self.assertEqual((scene["triangles"], scene["fidelity"], scene["animated"]), (840, "procedural", False))
+        self.assertEqual([light["name"] for light in scene["lights"]], ["key", "lamp", "sun", "spot", "ball"])
+        self.assertEqual(scene["lights"][0]["sides"], [1.6, 1.6])
+        self.assertEqual(scene["cameras"][0]["eye"], [2.0, 6.2, 7.8])
+        self.assertEqual(scene["meshes"][0]["open_edges"], 18)
+        self.assertIn("840 triangles", self.accepted("describe", "--scene", "columns"))
+        self.refused("describe", "--scene", "colums", says=["unknown scene 'colums'", "'columns'"])
+
     def test_every_technique_is_described(self):
         for entry in json.loads(self.accepted("list", "techniques", "--json")):
             info = json.loads(self.accepted("describe", entry["name"], "--json"))
