@@ -6,7 +6,7 @@ from reproducing import claims
 from reproducing.paper import shown
 from reproducing.svg import MARKERS, chart, number
 
-LOOKS = [("look-0", "circle"), ("look-1", "diamond"), ("look-2", "triangle")]
+LOOKS = [("look-0", "circle"), ("look-1", "diamond"), ("look-2", "triangle"), ("look-3", "square"), ("look-4", "cross"), ("look-5", "circle")]
 SOURCES = [("look-source", "square"), ("look-source2", "cross")]
 BADGES = {
     claims.HOLDS: "holds",
@@ -61,8 +61,9 @@ def our_table(series, grid):
     def cell(row, column):
         found = grid.cell(series, row, column)
         if found.value is None:
-            short = "none" if "no scene" in found.reason else "not run" if found.reason == "not run" else found.reason.split(":")[0]
-            return f'<td class="none" title="{e(found.reason)}">{e(short if len(short) < 24 else "–")}</td>'
+            said = found.reason.split(":")[0]
+            short = said if said in ("not run", "unsupported", "failed", "timeout") else "none" if said == "no scene of ours" else "–"
+            return f'<td class="none" title="{e(found.reason)}">{e(short)}</td>'
         low_high = found.interval()
         wide = low_high and low_high[1] - low_high[0] > 1e-9 * abs(found.value)
         spread = f"<small>{number(low_high[0])} – {number(low_high[1])}</small>" if wide else ""
@@ -88,7 +89,7 @@ def sides(grid, sources, pairs):
     for number_of, reported in enumerate(grid.table.get("reported", [])):
         values = [reported["rows"][r["id"]][[c["id"] for c in columns].index(k["id"])] if r["id"] in reported["rows"] else None for r, k in pairs]
         told.append((f"the source ({sources[reported['source']].split(',')[0]})", *SOURCES[number_of % 2], values, [None] * len(values)))
-    for series, (look, marker) in zip(grid.series, LOOKS):
+    for series, (look, marker) in zip(grid.series, LOOKS * (1 + len(grid.series) // len(LOOKS))):
         cells = [grid.cell(series, r, k) for r, k in pairs]
         told.append((series["label"], look, marker, [c.value for c in cells], [c.interval() for c in cells]))
     return [line for line in told if any(v is not None for v in line[3])]
