@@ -42,7 +42,7 @@ class Section:
         if "heat_map" in table and (strip := pictures.heat_maps(grid)):
             out.append(f'<div class="card">{strip}</div>')
         if self.verdicts:
-            out.append('<div class="card"><h3>Claims</h3>' + "".join(parts.claim_html(v) for v in self.verdicts) + "</div>")
+            out.append('<div class="card"><h3>Claims</h3><div class="claims">' + "".join(parts.claim_html(v) for v in self.verdicts) + "</div></div>")
         flag = "" if mode == "full" else f" --{mode}"
         command = f"scripts/reproduce {paper.name} {table['id']}{flag}"
         out.append(f'<div class="command"><pre>{e(command)}\npenumbra {e(" ".join(shell(a) for a in self.run.command()))}</pre></div></section>')

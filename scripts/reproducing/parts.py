@@ -73,6 +73,11 @@ def our_table(series, grid):
     return table_html(f"{e(series['label'])} <small>this run{e(unit)}</small>", grid, shown(grid.columns), cell)
 
 
+def short_name(label):
+    """A row's heading as it fits under a plot."""
+    return label.replace("LS ", "") if "(" in label else label.split(",")[0]
+
+
 def geometric_mean(values):
     return math.exp(sum(math.log(v) for v in values) / len(values))
 
@@ -139,7 +144,7 @@ def plots(grid, sources):
     else:
         for column in columns:
             panels.append(panel(column["label"], sides(grid, sources, [(r, column) for r in grid.rows]), list(range(len(grid.rows))),
-                                [r["label"].split(",")[0] for r in grid.rows], hardware(column, grid), None,
+                                [short_name(r["label"]) for r in grid.rows], hardware(column, grid), None,
                                 column.get("unit", grid.table.get("unit", "")), grid.table.get("row_label", ""), yes("y_log", "yes"), False, False))
     for _, lines in panels:
         key.update({name: (look, marker) for name, look, marker in lines})
@@ -157,7 +162,7 @@ def interval_text(line):
     if not line.interval:
         return "–"
     low, high = line.interval
-    return f"{number(low)}" if low == high else f"{number(low)} – {number(high)}"
+    return "–" if low == high else f"{number(low)} – {number(high)}"
 
 
 def claim_html(verdict):
@@ -167,8 +172,18 @@ def claim_html(verdict):
     out.append(f'<p class="note">{e(place)}Held to: {e(verdict.condition)}.</p>')
     if verdict.why:
         out.append(f'<p class="why">{e(verdict.why)}</p>')
-    out.append('<details open><summary>Line by line</summary><div class="scroll-x"><table><thead><tr><th></th><th class="num">source</th><th class="num">ours</th><th>95 % interval</th><th></th></tr></thead><tbody>')
+    measured = [line for line in verdict.lines if line.verdict != claims.MISSING]
+    if measured:
+        out.append('<div class="scroll-x"><table><thead><tr><th></th><th class="num">source</th><th class="num">ours</th><th>95 % interval</th><th></th></tr></thead><tbody>')
+        for line in measured:
+            out.append(
+                f'<tr><th>{e(line.label)}</th><td class="num">{e(number(line.paper))}</td><td class="num">{e(number(line.ours))}</td>'
+                f'<td>{e(interval_text(line))}</td><td class="soft">{e(line.verdict)}</td></tr>'
+            )
+        out.append("</tbody></table></div>")
+    reasons = {}
     for line in verdict.lines:
-        said = line.reason if line.verdict == claims.MISSING else line.verdict
-        out.append(f'<tr><th>{e(line.label)}</th><td class="num">{e(number(line.paper))}</td><td class="num">{e(number(line.ours))}</td><td>{e(interval_text(line))}</td><td class="soft">{e(said)}</td></tr>')
-    return "".join(out) + "</tbody></table></div></details></article>"
+        if line.verdict == claims.MISSING:
+            reasons.setdefault(line.reason, []).append(line.label)
+    out += [f'<p class="note">Not measured ({e(reason)}): {e(", ".join(labels))}.</p>' for reason, labels in reasons.items()]
+    return "".join(out) + "</article>"

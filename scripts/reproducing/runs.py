@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 
@@ -137,8 +138,13 @@ def execute(run, extra, quiet):
     if quiet:
         command.append("--quiet")
     process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL)
-    while True:
-        try:
-            return process.wait()
-        except KeyboardInterrupt:
-            print("reproduce: ending; what is finished is kept", file=sys.stderr)
+    # A terminal sends Ctrl-C to the program as well; a kill reaches this script alone.
+    before = signal.signal(signal.SIGTERM, lambda *_: process.send_signal(signal.SIGINT))
+    try:
+        while True:
+            try:
+                return process.wait()
+            except KeyboardInterrupt:
+                print("reproduce: ending; what is finished is kept", file=sys.stderr)
+    finally:
+        signal.signal(signal.SIGTERM, before)

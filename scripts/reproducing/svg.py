@@ -41,7 +41,8 @@ def log_ticks(low, high):
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     span = math.log10(high / low)
     steps = (1, 2, 3, 5) if span < 1 else (1, 2, 5) if span < 2.2 else (1, 3) if span < 4 else (1,)
-    return [s * 10.0**d for d in decades for s in steps if low * 0.999 <= s * 10.0**d <= high * 1.001]
+    ticks = lambda subs: [s * 10.0**d for d in decades for s in subs if low * 0.999 <= s * 10.0**d <= high * 1.001]
+    return next((t for t in (ticks(steps), ticks((1, 1.5, 2, 3, 4, 5, 7))) if len(t) >= 3), None) or linear_ticks(low, high)
 
 
 class Scale:
@@ -96,7 +97,8 @@ def chart(title, lines, x_places, x_labels, y_log, y_label, x_label="", x_log=Fa
         if x(place) - width / 2 < last:
             continue
         last = x(place) + width / 2 + 4
-        out.append(text(x(place), HEIGHT - BOTTOM + 16, label, "tick"))
+        beyond = x(place) + width / 2 > WIDTH
+        out.append(text(WIDTH if beyond else x(place), HEIGHT - BOTTOM + 16, label, "tick", "end" if beyond else "middle"))
     if x_label:
         out.append(text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, x_label, "axis-label"))
     middle = (TOP + HEIGHT - BOTTOM) / 2
