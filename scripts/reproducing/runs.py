@@ -3,7 +3,6 @@ import dataclasses
 import json
 import os
 import pathlib
-import re
 import signal
 import subprocess
 import sys
@@ -73,32 +72,37 @@ class Run:
         return arguments + (["--filter", self.filter] if self.filter else [])
 
 
-def settings(config, mode):
+def settings(paper, config, mode):
     """--set values: pointer -> value."""
-    sets, as_list = {}, lambda v: v if isinstance(v, list) else [v]
+    sets, as_list = rows_of_mode(paper, config, mode), lambda v: v if isinstance(v, list) else [v]
     for axis in mode.scale:
         if axis in config:
             values = [mode.scaled(axis, v) for v in as_list(config[axis])]
             sets[f"/{axis}"] = [v for i, v in enumerate(values) if v not in values[:i]]
-        for number, entry in enumerate(as_list(config.get("techniques", []))):
+        for number, entry in enumerate(sets.get("/techniques", as_list(config.get("techniques", [])))):
             if isinstance(entry, dict) and axis in entry.get("params", {}):
                 values = [mode.scaled(axis, v) for v in as_list(entry["params"][axis])]
                 sets[f"/techniques/{number}/params/{axis}"] = [v for i, v in enumerate(values) if v not in values[:i]]
     return {**sets, **mode.set}
 
 
-def filter_of(paper, mode):
-    parts = []
-    if mode.rows:
-        scenes = []
-        for row in mode.rows:
-            if row not in paper.data["scenes"]:
-                raise BadInput(f"{paper.folder / 'paper.json'}: the mode '{mode.name}' has rows of an unknown scene '{row}'")
-            scenes.append(re.escape(paper.scene_of(row) or row))
-        parts.append(f"^[^/]+/({'|'.join(scenes)})/")
-    if mode.filter:
-        parts.append(mode.filter)
-    return parts[0] if len(parts) == 1 else f"(?={parts[0]}).*(?:{parts[1]})" if parts else ""
+def rows_of_mode(paper, config, mode):
+    """Only the scenes of the mode's rows: not by a filter, so that the meshes of the others need not be there."""
+    if not mode.rows:
+        return {}
+    wanted, as_list = set(), lambda v: v if isinstance(v, list) else [v]
+    for row in mode.rows:
+        if row not in paper.data["scenes"]:
+            raise BadInput(f"{paper.folder / 'paper.json'}: the mode '{mode.name}' has rows of an unknown scene '{row}'")
+        wanted.add(paper.scene_of(row) or row)
+    keep = lambda scenes: [s for s in as_list(scenes) if s in wanted]
+    sets, entries = {}, as_list(config.get("techniques", []))
+    if "scene" in config:
+        sets["/scene"] = keep(config["scene"])
+    if any(isinstance(e, dict) and "scene" in e for e in entries):
+        own = [{**e, "scene": keep(e["scene"])} if isinstance(e, dict) and "scene" in e else e for e in entries]
+        sets["/techniques"] = [e for e in own if not isinstance(e, dict) or e.get("scene", True)]
+    return sets
 
 
 def plan(paper, tables, mode_name, out):
@@ -106,7 +110,7 @@ def plan(paper, tables, mode_name, out):
     runs = {}
     for table in tables:
         config, mode = read_config(paper, table), mode_of(paper, table, mode_name)
-        sets, wanted = settings(config, mode), filter_of(paper, mode)
+        sets, wanted = settings(paper, config, mode), mode.filter
         content = {k: v for k, v in config.items() if k not in ("name", "description", "$schema")}
         key = json.dumps([content, sets, wanted], sort_keys=True)
         if key in runs:

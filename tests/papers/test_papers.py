@@ -11,7 +11,7 @@ import unittest
 SOURCE = pathlib.Path(os.environ["PENUMBRA_SOURCE"])
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(SOURCE / "scripts"))
-from reproducing import paper, runs  # noqa: E402
+from reproducing import paper, reading, runs  # noqa: E402
 
 
 class Papers(unittest.TestCase):
@@ -35,7 +35,10 @@ class Papers(unittest.TestCase):
             for mode in ("full", "short"):
                 for run in runs.plan(the_paper, the_paper.data["tables"], mode, pathlib.Path("unused")):
                     with self.subTest(f"{name} {run.config.name} {mode}"):
-                        runs.check(run)
+                        try:
+                            runs.check(run)
+                        except reading.BadInput as error:  # meshes that no package holds need not be here
+                            self.assertIn("is not found. Get it with: scripts/fetch_scenes", str(error))
 
 
 if __name__ == "__main__":
