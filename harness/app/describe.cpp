@@ -43,12 +43,17 @@ std::vector<std::string> light_names(const TechniqueInfo& info) {
   return names;
 }
 
+const char* residence_of(const TechniqueInfo& info) {
+  if (info.residence_of) return "by parameters";
+  return info.residence == Residence::device ? "device" : "host";
+}
+
 json to_json(const TechniqueInfo& info) {
   json params = json::array();
   for (const ParamInfo& p : info.params) params.push_back(to_json(p));
-  return {{"name", info.name},       {"title", info.title},
-          {"sources", info.sources}, {"lights", light_names(info)},
-          {"sampled", info.sampled}, {"residence", info.residence == Residence::device ? "device" : "host"},
+  return {{"name", info.name},           {"title", info.title},     {"sources", info.sources},
+          {"lights", light_names(info)}, {"sampled", info.sampled}, {"residence", residence_of(info)},
+          {"choosing", info.choosing},
           {"parameters", params}};
 }
 
@@ -69,6 +74,9 @@ void print_text(const TechniqueInfo& info) {
                          : "Not sampled: mask_size, light_samples and light_pattern make no copies.");
   fmt::print("Parameters:{}\n", info.params.empty() ? " none" : "");
   for (const ParamInfo& p : info.params) print_param(p);
+  if (info.choosing.empty()) return;
+  fmt::print("Choosing:\n");
+  for (const std::string& sentence : info.choosing) fmt::print("  {}\n", sentence);
 }
 
 void print_schema(const std::string& wanted, const Registry& registry) {

@@ -161,7 +161,7 @@ std::size_t PointRun::mask_words() const {
 }
 
 void PointRun::allocate_output() {
-  if (info_.residence == Residence::host) {
+  if (info_.residence_with(point_.params) == Residence::host) {
     if (outputs_.host_visibility.size() < pixels()) outputs_.host_visibility.resize(pixels());
     if (outputs_.host_mask.size() < mask_words()) outputs_.host_mask.resize(mask_words());
     return;
@@ -178,7 +178,7 @@ void PointRun::bind_output() {
   input_ = {};
   input_.scene_case = &case_;
   input_.view_samples = &view_.samples();
-  if (info_.residence == Residence::host) {
+  if (info_.residence_with(point_.params) == Residence::host) {
     input_.host.visibility = std::span(outputs_.host_visibility).first(pixels());
     input_.host.mask = std::span(outputs_.host_mask).first(mask_words());
   } else {
@@ -190,7 +190,7 @@ void PointRun::bind_output() {
 // NaN everywhere: a pixel that the technique forgets to write is found, not inherited from the point before.
 void PointRun::poison_output() {
   bind_output();
-  if (info_.residence == Residence::host) {
+  if (info_.residence_with(point_.params) == Residence::host) {
     std::memset(input_.host.visibility.data(), 0xff, input_.host.visibility.size_bytes());
     std::memset(input_.host.mask.data(), 0xff, input_.host.mask.size_bytes());
     return;
@@ -206,7 +206,7 @@ Output PointRun::read_output() {
   Output output;
   output.visibility.resize(pixels());
   output.mask.resize(mask_words());
-  if (info_.residence == Residence::host) {
+  if (info_.residence_with(point_.params) == Residence::host) {
     std::copy(input_.host.visibility.begin(), input_.host.visibility.end(), output.visibility.begin());
     std::copy(input_.host.mask.begin(), input_.host.mask.end(), output.mask.begin());
   } else {

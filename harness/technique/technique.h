@@ -83,9 +83,15 @@ struct TechniqueInfo {
   std::vector<std::string> sources;  // keys of techniques/references.bib, with the section: "GEARS, A.1"
   std::vector<ParamInfo> params;
   std::vector<LightKind> lights;  // kinds it can take
+  std::vector<std::string> choosing;  // when to prefer it to others, in whole sentences; for `describe`
   bool sampled = false;           // uses the light samples and returns masks; else the light's centre or
                                   // shape: mask_size, light_samples and light_pattern make no copies
   Residence residence = Residence::device;
+  // Where that depends on the parameters (gears' backend).
+  std::function<Residence(const ParamValues&)> residence_of;
+  Residence residence_with(const ParamValues& values) const {
+    return residence_of ? residence_of(values) : residence;
+  }
   // Which origin it declares, given its parameters.
   std::function<Origin(const ParamValues&)> origin = [](const ParamValues&) { return Origin::offset; };
   // True when the params ask for the structures to be rebuilt every frame (ray_tracing's `dynamic`).

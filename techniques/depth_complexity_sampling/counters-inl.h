@@ -6,6 +6,7 @@
 #else
 #define PENUMBRA_DEPTH_COMPLEXITY_COUNTERS
 #endif
+#include <array>
 #include <cstring>
 #include <limits>
 
@@ -17,52 +18,100 @@ namespace penumbra::depth_complexity::HWY_NAMESPACE {
 // Counters of a grid lie row by row, a row's in `pitch` places; one more row takes what falls below the last
 // one.
 
+// The first row below a crossing in each of some columns x.
+struct RowStart {
+  Vector x0, y0, slope, lo, hi;
+  HWY_INLINE Vector at(Vector x) const {
+    const Vector y = hn::Add(y0, hn::Mul(hn::Sub(x, x0), slope));
+    return hn::Ceil(hn::Min(hn::Max(y, lo), hi));
+  }
+};
+
+// Of a vector that may hold several rows: the row after a lane's.
+template <std::size_t pitch, class T>
+inline constexpr std::array<T, 64 / sizeof(T)> rows_after_lanes = [] {
+  std::array<T, 64 / sizeof(T)> rows{};
+  for (std::size_t l = 0; l < rows.size(); ++l) rows[l] = static_cast<T>(l / pitch + 1);
+  return rows;
+}();
+
+// A crossing of many columns: every row learns by comparison whether it lies below, so that no counter is
+// touched on its own. `sums`: counters proper, without the running sum.
+template <std::size_t pitch, class T>
+HWY_INLINE void add_below(const Crossings& in, std::size_t i, std::size_t places, T* sums) {
+  const Floats d;
+  const hn::CappedTag<T, 64 / sizeof(T)> dt;
+  const hn::Rebind<T, Floats> narrow;
+  const hn::RebindToSigned<Floats> di;
+  const std::size_t lanes = hn::Lanes(dt), rows_at_once = std::max<std::size_t>(1, lanes / pitch);
+  const auto all = [&](CrossingField f) HWY_ATTR { return set(in.v[f][i]); };
+  const RowStart start{all(cross_x0), all(cross_y0), all(cross_slope), all(cross_lo), all(cross_hi)};
+  const Vector first = all(cross_first), last = all(cross_last), never = set(127);
+  // Per column its first row, as often as a vector has rows.
+  alignas(64) T rows[std::max<std::size_t>(pitch, 64 / sizeof(T))];
+  for (std::size_t c = 0; c < pitch; c += hn::Lanes(d)) {
+    const Vector x = hn::Iota(d, static_cast<float>(c));
+    const Mask covered = hn::And(hn::Le(first, x), hn::Lt(x, last));
+    const auto row = hn::ConvertTo(di, hn::IfThenElse(covered, start.at(x), never));
+    if constexpr (sizeof(T) == 4) {
+      for (std::size_t k = 0; k < rows_at_once; ++k) hn::StoreU(row, di, rows + k * pitch + c);
+    } else {
+      const auto small = hn::DemoteTo(narrow, row);
+      for (std::size_t k = 0; k < rows_at_once; ++k) hn::StoreU(small, narrow, rows + k * pitch + c);
+    }
+  }
+  const auto after_lane = hn::LoadU(dt, rows_after_lanes<pitch, T>.data());
+  const auto w = hn::Set(dt, static_cast<T>(in.v[cross_weight][i]));
+  const auto from = static_cast<std::size_t>(in.v[cross_lo][i]) * pitch / lanes * lanes;
+  for (std::size_t at = from; at < places; at += lanes) {
+    const auto after = hn::Add(after_lane, hn::Set(dt, static_cast<T>(at / pitch)));
+    const auto below = hn::Gt(after, hn::Load(dt, rows + at % pitch));
+    hn::Store(hn::Add(hn::Load(dt, sums + at), hn::IfThenElseZero(below, w)), dt, sums + at);
+  }
+}
+
 // Adds each crossing's weight at the first row below it, in each column it covers: a running sum down the
-// rows then gives the counters.
-template <class T>
-HWY_INLINE void scatter(const Crossings& in, std::size_t pitch, T* counters) {
+// rows then gives the counters. Crossings of many columns go to `sums` instead, which is cleared when the
+// first one comes; returns whether one came.
+template <std::size_t pitch, class T>
+HWY_INLINE bool scatter(const Crossings& in, std::size_t places, T* counters, T* sums) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
   const std::size_t lanes = hn::Lanes(d);
-  constexpr float many_columns = 4;
-  alignas(64) int32_t place[block_edges];
-  const auto row_start = [&](Vector x, Vector x0, Vector y0, Vector slope, Vector lo, Vector hi) HWY_ATTR {
-    const Vector y = hn::Add(y0, hn::Mul(hn::Sub(x, x0), slope));
-    const Vector row = hn::Ceil(hn::Min(hn::Max(y, lo), hi));
-    hn::Store(hn::ConvertTo(di, hn::Add(hn::Mul(row, set(static_cast<float>(pitch))), x)), di, place);
-  };
+  // Where comparing all rows costs less than touching a counter per column.
+  const std::size_t vectors = places / hn::Lanes(hn::CappedTag<T, 64 / sizeof(T)>());
+  const Vector many_columns = set(static_cast<float>(3 + vectors / 2));
+  alignas(64) int32_t place[block_edges], weights[block_edges];
+  bool any_wide = false;
   for (std::size_t o = 0; o < in.count; o += lanes) {
     const auto load = [&](CrossingField f) HWY_ATTR { return hn::LoadU(d, in.v[f].data() + o); };
-    const float* weights = in.v[cross_weight].data() + o;
     Vector x = load(cross_first);
     const Vector last = load(cross_last);
     Mask active = hn::Lt(x, last);
     if (o + lanes > in.count) active = hn::And(active, hn::FirstN(d, in.count - o));
-    const Mask wide = hn::And(active, hn::Ge(hn::Sub(last, x), set(many_columns)));
+    const Mask wide = hn::And(active, hn::Ge(hn::Sub(last, x), many_columns));
     if (!hn::AllFalse(d, wide)) {
       active = hn::AndNot(wide, active);
-      for (uint32_t bits = bits_of(wide); bits; bits &= bits - 1) {
-        const std::size_t i = o + static_cast<std::size_t>(__builtin_ctz(bits));
-        const T w = static_cast<T>(in.v[cross_weight][i]);
-        const auto all = [&](CrossingField f) HWY_ATTR { return set(in.v[f][i]); };
-        for (float c = in.v[cross_first][i]; c < in.v[cross_last][i]; c += static_cast<float>(lanes)) {
-          row_start(hn::Iota(d, c), all(cross_x0), all(cross_y0), all(cross_slope), all(cross_lo),
-                    all(cross_hi));
-          const auto n = std::min(lanes, static_cast<std::size_t>(in.v[cross_last][i] - c));
-          for (std::size_t l = 0; l < n; ++l) counters[place[l]] = static_cast<T>(counters[place[l]] + w);
-        }
-      }
+      if (!any_wide) std::memset(sums, 0, places * sizeof(T));
+      any_wide = true;
+      for (uint32_t bits = bits_of(wide); bits; bits &= bits - 1)
+        add_below<pitch>(in, o + static_cast<std::size_t>(__builtin_ctz(bits)), places, sums);
     }
-    while (!hn::AllFalse(d, active)) {
-      row_start(x, load(cross_x0), load(cross_y0), load(cross_slope), load(cross_lo), load(cross_hi));
+    if (hn::AllFalse(d, active)) continue;
+    const RowStart start{load(cross_x0), load(cross_y0), load(cross_slope), load(cross_lo), load(cross_hi)};
+    hn::Store(hn::ConvertTo(di, load(cross_weight)), di, weights);
+    do {
+      const Vector at = hn::Add(hn::Mul(start.at(x), set(static_cast<float>(pitch))), x);
+      hn::Store(hn::ConvertTo(di, at), di, place);
       for (uint32_t bits = bits_of(active); bits; bits &= bits - 1) {
         const auto l = static_cast<std::size_t>(__builtin_ctz(bits));
         counters[place[l]] = static_cast<T>(counters[place[l]] + static_cast<T>(weights[l]));
       }
       x = hn::Add(x, set(1.0F));
       active = hn::And(active, hn::Lt(x, last));
-    }
+    } while (!hn::AllFalse(d, active));
   }
+  return any_wide;
 }
 
 template <class T>
@@ -78,12 +127,15 @@ HWY_INLINE T least_of(const T* values, std::size_t count) {  // count: a multipl
 
 // The rows' candidates.
 template <std::size_t pitch, class T>
-HWY_NOINLINE void grid_candidates(const Crossings& in, int columns, int rows, T* counters, uint64_t* words) {
+HWY_NOINLINE void grid_candidates(const Crossings& in, int columns, int rows, T* counters, T* sums,
+                                  uint64_t* words) {
   const std::size_t places = pitch * static_cast<std::size_t>(rows);
+  // In whole vectors: one may hold several rows.
+  constexpr std::size_t unit = std::max<std::size_t>(pitch, 64 / sizeof(T));
   const hn::CappedTag<T, pitch> d;
   const std::size_t lanes = hn::Lanes(d);
   std::memset(counters, 0, (places + pitch) * sizeof(T));
-  scatter(in, pitch, counters);
+  const bool wide = scatter<pitch>(in, (places + unit - 1) / unit * unit, counters, sums);
   // What events add to whole columns. Places past the last column are never the least.
   alignas(64) T top[pitch], least[pitch];
   std::fill(top, top + pitch, static_cast<T>(0));
@@ -102,8 +154,9 @@ HWY_NOINLINE void grid_candidates(const Crossings& in, int columns, int rows, T*
     auto sum = hn::Load(d, top + c), low = hn::Set(d, std::numeric_limits<T>::max());
     for (std::size_t i = c; i < places; i += pitch) {
       sum = hn::Add(sum, hn::Load(d, counters + i));
-      hn::Store(sum, d, counters + i);
-      low = hn::Min(low, sum);
+      const auto total = wide ? hn::Add(sum, hn::Load(d, sums + i)) : sum;
+      hn::Store(total, d, counters + i);
+      low = hn::Min(low, total);
     }
     hn::Store(low, d, least + c);
   }

@@ -23,7 +23,8 @@ struct View {
 };
 
 HWY_INLINE Mask sign_bit(Vector v) {
-  return hn::Lt(hn::Or(hn::And(v, set(-0.0F)), set(1.0F)), hn::Zero(Floats()));
+  const hn::RebindToSigned<Floats> di;
+  return hn::RebindMask(Floats(), hn::Lt(hn::BitCast(di, v), hn::Zero(di)));
 }
 // The one expression that says on which side of a face the view sample is. Zero counts as +, for all its
 // edges.

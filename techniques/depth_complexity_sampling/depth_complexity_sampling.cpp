@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "embree/flush_denormals.h"
+#include "techniques/common/exact_choice.h"
 #include "techniques/depth_complexity_sampling/params.h"
 #include "techniques/depth_complexity_sampling/view_groups.h"
 
@@ -115,7 +116,8 @@ void DepthComplexitySampling::masks(const RenderInput& in) {
     Scratch& scratch = self.scratch_[worker];
     for (std::size_t tile = work.next++; tile < work.tiles; tile = work.next++) {
       ViewPoint points[tile_pixels];
-      const std::size_t count = gather_tile(work.view, tile, self.light_, self.judge_, points);
+      const std::size_t count =
+          gather_tile(work.view, tile, self.light_, self.judge_, points, scratch.counts);
       for (std::size_t g = 0; g < count; g += large_group)
         find_candidates(occluders, points + g, std::min(large_group, count - g), scratch);
     }
@@ -136,6 +138,10 @@ Counters DepthComplexitySampling::counters() {
           {"inconsistent_edges", static_cast<double>(topology_.inconsistent)},
           {"non_manifold_edges", static_cast<double>(topology_.non_manifold)},
           {"potential_silhouette_edges", static_cast<double>(silhouettes_.potential())},
+          {"potential_silhouette_share",
+           topology_.edges.empty()
+               ? 0.0
+               : static_cast<double>(silhouettes_.potential()) / static_cast<double>(topology_.edges.size())},
           {"topology_bytes", static_cast<double>(topology_.bytes())},
           {"silhouette_bytes", static_cast<double>(silhouettes_.bytes())},
           {"bvh_bytes", hierarchy_ ? static_cast<double>(hierarchy_->bytes()) : 0.0},
@@ -144,6 +150,7 @@ Counters DepthComplexitySampling::counters() {
           {"silhouette_edges_per_view_sample", per_sample(counts_.crossings)},
           {"view_samples_without_edge", static_cast<double>(counts_.unparted)},
           {"view_samples_with_wide_counters", static_cast<double>(counts_.wide)},
+          {"view_samples_traced", static_cast<double>(counts_.traced)},
           {"tree_nodes_visited", static_cast<double>(counts_.nodes)},
           {"blocks_entered", static_cast<double>(counts_.blocks_entered)},
           {"rays", static_cast<double>(counts_.rays)},
@@ -161,6 +168,7 @@ TechniqueInfo depth_complexity_sampling_technique() {
   info.params = depth_complexity_params().infos();
   info.lights = {LightKind::point,  LightKind::spot,  LightKind::rectangle, LightKind::textured_rectangle,
                  LightKind::sphere, LightKind::volume};
+  info.choosing = exact_choice_in_words();
   info.sampled = true;
   info.residence = Residence::host;
   info.rebuild_each_frame = [](const ParamValues& values) {

@@ -34,8 +34,10 @@ void RayJudge::assign(const Light& light, const LightSamples& samples, const Lig
   columns_ = grid_ ? static_cast<std::size_t>(space.columns) : 64;
   used_words_ = grid_ ? static_cast<std::size_t>(space.rows) : (samples_ + 63) / 64;
   mask_words_ = static_cast<std::size_t>(samples.mask_words());
+  packed_ = samples_ % 64 == 0 && 64 % columns_ == 0;
   all_.assign(used_words_, columns_ == 64 ? ~uint64_t{0} : (uint64_t{1} << columns_) - 1);
   if (const std::size_t rest = samples_ % columns_) all_.back() = (uint64_t{1} << rest) - 1;
+  middle_ = choose_middle(all_.data());
 }
 
 void RayJudge::bind(const EmbreeHierarchy& hierarchy, const ViewSamplesHost& view,
@@ -146,9 +148,20 @@ bool RayJudge::verify(std::size_t pixel, Choice first, bool is_blocked, uint64_t
   return false;
 }
 
-// `visible`: bits of seen samples, as the candidates lie.
-void RayJudge::write(std::size_t pixel, const uint64_t* visible) const {
-  uint32_t* mask = &mask_[pixel * mask_words_];
+// Rows that fill 64 bits together: those of the usual grids.
+std::size_t RayJudge::write_packed(const uint64_t* visible, uint32_t* mask) const {
+  const std::size_t rows = 64 / columns_;
+  std::size_t seen = 0;
+  for (std::size_t w = 0; w < used_words_; w += rows, mask += 2) {
+    uint64_t bits = 0;
+    for (std::size_t r = 0; r < rows; ++r) bits |= visible[w + r] << (r * columns_);
+    seen += bit_count(bits);
+    mask[0] = static_cast<uint32_t>(~bits), mask[1] = static_cast<uint32_t>(~bits >> 32);
+  }
+  return seen;
+}
+
+std::size_t RayJudge::write_unpacked(const uint64_t* visible, uint32_t* mask) const {
   std::size_t seen = 0, word = 0;
   uint64_t pending = 0;
   std::size_t pending_bits = 0, left = samples_;
@@ -169,6 +182,13 @@ void RayJudge::write(std::size_t pixel, const uint64_t* visible) const {
     pending_bits = have;
   }
   if (pending_bits) mask[word] = static_cast<uint32_t>(pending);
+  return seen;
+}
+
+// `visible`: bits of seen samples, as the candidates lie.
+void RayJudge::write(std::size_t pixel, const uint64_t* visible) const {
+  uint32_t* mask = &mask_[pixel * mask_words_];
+  const std::size_t seen = packed_ ? write_packed(visible, mask) : write_unpacked(visible, mask);
   if (uniform_) {
     visibility_[pixel] = static_cast<float>(seen) / static_cast<float>(samples_);
     return;
@@ -180,16 +200,33 @@ void RayJudge::write(std::size_t pixel, const uint64_t* visible) const {
   visibility_[pixel] = static_cast<float>(std::min(sum, 1.0));
 }
 
+// Each light sample asked on its own: where P lies before a rectangle's plane and P' does not, so that
+// nothing can be projected onto it.
+std::size_t RayJudge::trace_each(std::size_t pixel) const {
+  uint64_t words[most_words];
+  std::copy(all_.begin(), all_.end(), words);
+  keep_above_horizon(pixel, words);
+  std::size_t rays = 0;
+  for (std::size_t w = 0; w < used_words_; ++w)
+    for (uint64_t bits = words[w]; bits; bits &= bits - 1, ++rays)
+      if (blocked(pixel, sample_at(w, std::countr_zero(bits)))) words[w] &= ~(bits & (~bits + 1));
+  write(pixel, words);
+  return rays;
+}
+
 void RayJudge::judge(const ViewPoint* points, std::size_t count, Scratch& scratch) const {
   Segments segments{};
   Choice choices[small_group];
+  bool whole[small_group];  // all samples, or none
   uint32_t wanted = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pixel = points[i].pixel;
     uint64_t* words = scratch.candidates.words[i];
-    if (!scratch.candidates.parted[i]) std::copy(all_.begin(), all_.end(), words);
+    const bool parted = scratch.candidates.parted[i];
+    whole[i] = !parted && !points[i].across;
+    if (!parted && !whole[i]) std::copy(all_.begin(), all_.end(), words);
     if (points[i].across) keep_above_horizon(pixel, words);
-    choices[i] = scratch.candidates.parted[i] ? choose(words) : choose_middle(words);
+    choices[i] = parted ? choose(words) : whole[i] ? middle_ : choose_middle(words);
     if (choices[i].sample == samples_) continue;
     wanted |= 1U << i;
     const Vec3f o = view_->origin[pixel].xyz();
@@ -204,7 +241,7 @@ void RayJudge::judge(const ViewPoint* points, std::size_t count, Scratch& scratc
     bool is_blocked = (wanted >> i & 1) == 0 || (blocked_bits >> i & 1) != 0;
     if (wanted >> i & 1 && !choices[i].inner)
       is_blocked = verify(points[i].pixel, choices[i], is_blocked, words, scratch);
-    is_blocked ? write_whole(points[i].pixel, true) : write(points[i].pixel, words);
+    is_blocked || whole[i] ? write_whole(points[i].pixel, is_blocked) : write(points[i].pixel, words);
   }
 }
 

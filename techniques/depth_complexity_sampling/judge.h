@@ -22,6 +22,9 @@ class RayJudge final : public Judge {
   // A pixel without a ray: no view sample, or no light.
   void write_whole(std::size_t pixel, bool blocked) const;
 
+  // A pixel by a ray for each light sample above its horizon; returns how many.
+  std::size_t trace_each(std::size_t pixel) const;
+
   void judge(const ViewPoint* points, std::size_t count, Scratch& scratch) const override;
   uint64_t bytes() const;
 
@@ -37,6 +40,8 @@ class RayJudge final : public Judge {
   bool verify(std::size_t pixel, Choice first, bool blocked, uint64_t* words, Scratch& scratch) const;
   bool blocked(std::size_t pixel, std::size_t sample) const;
   void write(std::size_t pixel, const uint64_t* visible) const;
+  std::size_t write_packed(const uint64_t* visible, uint32_t* mask) const;
+  std::size_t write_unpacked(const uint64_t* visible, uint32_t* mask) const;
   std::size_t sample_at(std::size_t word, int bit) const;
 
   Light light_;
@@ -44,7 +49,8 @@ class RayJudge final : public Judge {
   Box bounds_;
   float cone_cosine_ = -1;
   bool uniform_ = true;
-  bool grid_ = false;
+  bool grid_ = false, packed_ = false;
+  Choice middle_;              // among all samples
   std::vector<uint64_t> all_;  // words with all samples in them
   std::size_t columns_ = 1, used_words_ = 1, mask_words_ = 1, samples_ = 1;
   const EmbreeHierarchy* hierarchy_ = nullptr;

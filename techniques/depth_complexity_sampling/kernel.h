@@ -1,6 +1,7 @@
 // What the vector code (compiled once per instruction set) and the plain code around it hand to one another.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -80,7 +81,7 @@ struct Candidates {
 
 struct WorkCounts {
   uint64_t view_samples = 0, small_groups = 0, nodes = 0, blocks_tested = 0, blocks_entered = 0,
-           edges_tested = 0, crossings = 0, unparted = 0, wide = 0, rays = 0, extra_rays = 0;
+           edges_tested = 0, crossings = 0, unparted = 0, wide = 0, rays = 0, extra_rays = 0, traced = 0;
   void add(const WorkCounts& o);
 };
 
@@ -95,7 +96,8 @@ struct alignas(64) Scratch {
   alignas(64) int8_t counters_8[places];
   alignas(64) int16_t counters_16[places];
   alignas(64) int32_t counters_32[places];
-  std::vector<float> projected_x, projected_y;  // of a set's samples that are not in one plane
+  alignas(64) std::byte sums[places * sizeof(int32_t)];  // what wide crossings add, in the counters' type
+  std::vector<float> projected_x, projected_y;           // of a set's samples that are not in one plane
   Candidates candidates;
   WorkCounts counts;
   // Makes room for as much as another worker met.

@@ -24,7 +24,7 @@ void WorkCounts::add(const WorkCounts& o) {
   view_samples += o.view_samples, small_groups += o.small_groups, nodes += o.nodes;
   blocks_tested += o.blocks_tested, blocks_entered += o.blocks_entered, edges_tested += o.edges_tested;
   crossings += o.crossings, unparted += o.unparted, wide += o.wide, rays += o.rays,
-      extra_rays += o.extra_rays;
+      extra_rays += o.extra_rays, traced += o.traced;
 }
 
 void Scratch::grow_like(const Scratch& o) {

@@ -39,7 +39,7 @@ std::size_t tile_count(const ViewSamplesHost& view) {
 }
 
 std::size_t gather_tile(const ViewSamplesHost& view, std::size_t tile, const LightSpace& light,
-                        const RayJudge& judge, ViewPoint* out) {
+                        const RayJudge& judge, ViewPoint* out, WorkCounts& counts) {
   const std::size_t across = tiles_across(view.width), width = static_cast<std::size_t>(view.width),
                     height = static_cast<std::size_t>(view.height);
   const std::size_t x0 = tile % across * tile_side, y0 = tile / across * tile_side;
@@ -53,8 +53,13 @@ std::size_t gather_tile(const ViewSamplesHost& view, std::size_t tile, const Lig
       }
       const RayJudge::Horizon horizon = judge.horizon(pixel);
       const Vec3f p = light.from_world(view.origin[pixel].xyz());
-      if (horizon == RayJudge::Horizon::below || !(p.z > 0)) {
+      if (horizon == RayJudge::Horizon::below) {
         judge.write_whole(pixel, true);
+        continue;
+      }
+      if (!(p.z > 0)) {
+        ++counts.view_samples, ++counts.traced;
+        counts.extra_rays += judge.trace_each(pixel);
         continue;
       }
       out[count++] = {p.x, p.y, p.z, static_cast<uint32_t>(pixel), horizon == RayJudge::Horizon::across};

@@ -132,12 +132,13 @@ HWY_INLINE bool candidates_of(const LightSpace& light, const ViewPoint& p, Scrat
   if constexpr (grid) {
     const int w = light.columns, h = light.rows;
     const auto count_in = [&](auto* counters) HWY_ATTR {
+      auto* const sums = reinterpret_cast<decltype(counters)>(scratch.sums);
       if (w <= 16)
-        grid_candidates<16>(c, w, h, counters, words);
+        grid_candidates<16>(c, w, h, counters, sums, words);
       else if (w <= 32)
-        grid_candidates<32>(c, w, h, counters, words);
+        grid_candidates<32>(c, w, h, counters, sums, words);
       else
-        grid_candidates<64>(c, w, h, counters, words);
+        grid_candidates<64>(c, w, h, counters, sums, words);
     };
     scratch.counts.wide += most > 126;
     if (most <= 126)
@@ -145,7 +146,7 @@ HWY_INLINE bool candidates_of(const LightSpace& light, const ViewPoint& p, Scrat
     else if (most <= 32766)
       count_in(scratch.counters_16);
     else
-      grid_candidates<64>(c, w, h, scratch.counters_32, words);
+      grid_candidates<64>(c, w, h, scratch.counters_32, reinterpret_cast<int32_t*>(scratch.sums), words);
   } else {
     const bool moves = !light.planar;
     set_candidates(c, moves ? scratch.projected_x.data() : light.points_x.data(),

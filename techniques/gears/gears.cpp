@@ -4,9 +4,11 @@
 
 #include <bit>
 
+#include "techniques/common/exact_choice.h"
 #include "techniques/common/mask_resolve.h"
 #include "techniques/gears/cells.h"
 #include "techniques/gears/clusters.h"
+#include "techniques/gears/cpu_backend.h"
 
 namespace penumbra {
 namespace {
@@ -20,8 +22,6 @@ class Gears final : public Technique {
   explicit Gears(const GearsParams& params) : params_(params) { state_.params = params; }
 
   std::optional<std::string> supports(const Case& c) const override {
-    if (params_.backend == GearsParams::Backend::cpu)
-      return "The cpu backend of gears is not there yet; use backend=vulkan.";
     const uint32_t lanes = lanes_of(*c.device);
     if (lanes < 4 || !std::has_single_bit(lanes))
       return fmt::format("gears needs subgroups of 4 lanes or more; this device has {}.", lanes);
@@ -99,8 +99,16 @@ TechniqueInfo gears_technique() {
   info.params = gears_params().infos();
   info.lights = {LightKind::point,  LightKind::directional,        LightKind::spot,  LightKind::rectangle,
                  LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
+  info.choosing = exact_choice_in_words();
   info.sampled = true;
-  info.make = [](const ParamValues& values) -> std::unique_ptr<Technique> {
+  const auto on_host = [](const ParamValues& values) {
+    return gears_params().read(values).backend == GearsParams::Backend::cpu;
+  };
+  info.residence_of = [on_host](const ParamValues& values) {
+    return on_host(values) ? Residence::host : Residence::device;
+  };
+  info.make = [on_host](const ParamValues& values) -> std::unique_ptr<Technique> {
+    if (on_host(values)) return cpu::make_backend(gears_params().read(values));
     return std::make_unique<Gears>(gears_params().read(values));
   };
   return info;

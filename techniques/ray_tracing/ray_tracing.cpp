@@ -1,6 +1,7 @@
 #include "techniques/ray_tracing/ray_tracing.h"
 
 #include "techniques/common/embree_hierarchy.h"
+#include "techniques/common/exact_choice.h"
 #include "techniques/ray_tracing/params.h"
 #include "techniques/ray_tracing/tracer.h"
 
@@ -107,6 +108,7 @@ TechniqueInfo ray_tracing_technique() {
   info.params = ray_tracing_params().infos();
   info.lights = {LightKind::point,  LightKind::directional,        LightKind::spot,  LightKind::rectangle,
                  LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
+  info.choosing = exact_choice_in_words();
   info.sampled = true;
   info.residence = Residence::host;
   info.rebuild_each_frame = [](const ParamValues& values) {

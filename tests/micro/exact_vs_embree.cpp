@@ -1,19 +1,21 @@
-// depth_complexity_sampling, all its per-frame stages, against Embree's fastest packets in one run, on the
-// study's scenes, and what each stage takes:
-//   micro_exact_vs_embree [SCENE ...] [k=16,32] [resolution=512] [light_size=D] [dynamic=true] [soup=true]
-//   [quick=true]
+// The exact techniques that run on the host, all their per-frame stages, against Embree's fastest packets in
+// one run, on the study's scenes, and what each stage takes:
+//   micro_exact_vs_embree [SCENE ...] [k=16,32] [techniques=depth,clusters,triangles] [resolution=512]
+//   [light_size=D] [dynamic=true] [soup=true] [quick=true]
 //   [--benchmark_repetitions=5] [--benchmark_enable_random_interleaving=true]
-// Each stage's milliseconds are printed as counters; find_edges_once is the edge topology, no part of a
-// frame. Scenes are names under configs/scenes (the study_* scenes that are there by default). The opponent
-// is ray_tracing, not robust, with packets of 8 and 16 rays and both coherence hints (dynamic: with its own
-// choice of packet, at its low, medium and refitted build qualities): the fastest counts. light_size: the
-// rectangle's diagonal. dynamic: both sides take the vertices anew each frame, and building counts. soup:
-// each triangle shrunk by a thousandth, so that every edge is open. quick: one opponent, ray_tracing as it
-// chooses for itself. The table ends with the ratio of the medians.
+// techniques: depth_complexity_sampling, and gears with backend=cpu and either assignment; depth and clusters
+// by default. Each stage's milliseconds are printed as counters; find_edges_once and order_triangles_once are
+// made once for a topology, no part of a frame. Scenes are names under configs/scenes (the study_* scenes
+// that are there by default). The opponent is ray_tracing, not robust, with packets of 8 and 16 rays and both
+// coherence hints (dynamic: with its own choice of packet, at its low, medium and refitted build qualities):
+// the fastest counts. light_size: the rectangle's diagonal. dynamic: all sides take the vertices anew each
+// frame, and building counts. soup: each triangle shrunk by a thousandth, so that every edge is open. quick:
+// one opponent, ray_tracing as it chooses for itself. The table ends with the ratios of the medians.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sstream>
 
@@ -29,6 +31,7 @@ using testing::DeviceScene;
 struct Options {
   std::vector<std::string> scenes;
   std::vector<int> k = {16, 32};
+  std::vector<std::string> techniques = {"depth", "clusters"};
   int resolution = 512;
   float light_size = -1;
   bool dynamic = false, soup = false, quick = false;
@@ -41,7 +44,7 @@ struct HostRun {
   std::vector<float> visibility;
   std::vector<uint32_t> mask;
   std::map<std::string, double> passes;
-  double topology_ms = 0;
+  std::map<std::string, double> once;  // passes of the first build
 
   HostRun(DeviceScene& scene_, const std::string& name, const ParamValues& given) : scene(scene_) {
     const Registry registry = all_techniques();
@@ -51,7 +54,8 @@ struct HostRun {
     mask.resize(visibility.size() * static_cast<std::size_t>(scene.samples.mask_words()));
     build();
     taken();
-    topology_ms = passes["find_edges"];
+    for (const char* name_once : {"find_edges", "order_triangles"})
+      if (passes.contains(name_once)) once[name_once] = passes[name_once];
   }
   void build() { technique->build(scene.scene_case, scene.passes); }
   void render() {
@@ -75,7 +79,7 @@ void measure(benchmark::State& state, HostRun& run, bool dynamic) {
     run.render();
     state.SetIterationTime(run.taken() / 1000);
   }
-  if (run.topology_ms > 0) state.counters["find_edges_once"] = run.topology_ms;
+  for (const auto& [name, ms] : run.once) state.counters[name + "_once"] = ms;
   for (const auto& [name, ms] : run.passes)
     state.counters[name] = benchmark::Counter(ms, benchmark::Counter::kAvgIterations);
 }
@@ -117,7 +121,12 @@ void add(gpu::Device& device, const Options& options, const std::string& name, i
       for (const std::string coherent : {"on", "off"})
         add_one("embree_" + packet + "_coherent_" + coherent, "ray_tracing",
                 {{"packet", packet}, {"coherent", coherent}});
-  add_one("depth_complexity_sampling", "depth_complexity_sampling", {{"dynamic", options.dynamic}});
+  for (const std::string& technique : options.techniques)
+    if (technique == "depth")
+      add_one("depth_complexity_sampling", "depth_complexity_sampling", {{"dynamic", options.dynamic}});
+    else
+      add_one("gears_cpu_" + technique, "gears",
+              {{"backend", std::string("cpu")}, {"assignment", technique}});
 }
 
 // Prints as usual, and keeps the times for the closing ratios.
@@ -130,20 +139,24 @@ class Ratios : public benchmark::ConsoleReporter {
     ConsoleReporter::ReportRuns(runs);
   }
   void Finalize() override {
-    struct Best {
-      double embree = INFINITY, ours = INFINITY;
-    };
-    std::map<std::string, Best> best;  // by scene and k
+    std::map<std::string, double> embree;                       // by scene and k
+    std::map<std::string, std::map<std::string, double>> ours;  // and by technique
     for (auto& [name, times] : times_) {
       std::ranges::sort(times);
+      const double median = times[times.size() / 2];
       const std::size_t slash = name.rfind('/');
-      Best& b = best[name.substr(0, slash)];
-      double& slot = name.compare(slash + 1, 6, "embree") == 0 ? b.embree : b.ours;
-      slot = std::min(slot, times[times.size() / 2]);
+      const std::string scene = name.substr(0, slash), label = name.substr(slash + 1);
+      if (label.starts_with("embree")) {
+        const double before = embree.contains(scene) ? embree[scene] : INFINITY;
+        embree[scene] = std::min(before, median);
+      } else {
+        ours[scene][label] = median;
+      }
     }
-    for (const auto& [name, b] : best)
-      fmt::print("{}: embree {:.0f} ms, depth complexity sampling {:.1f} ms: {:.2f} times as fast\n", name,
-                 b.embree, b.ours, b.embree / b.ours);
+    for (const auto& [scene, by_technique] : ours)
+      for (const auto& [label, ms] : by_technique)
+        fmt::print("{}: embree {:.0f} ms, {} {:.1f} ms: {:.2f} times as fast\n", scene, embree[scene], label,
+                   ms, embree[scene] / ms);
   }
 
  private:
@@ -163,6 +176,15 @@ Options read(int argc, char** argv) {
       o.k.clear();
       std::istringstream list(value);
       for (std::string one; std::getline(list, one, ',');) o.k.push_back(std::stoi(one));
+    } else if (key == "techniques") {
+      o.techniques.clear();
+      std::istringstream list(value);
+      for (std::string one; std::getline(list, one, ',');) {
+        const std::vector<std::string> known = {"depth", "clusters", "triangles"};
+        if (std::ranges::find(known, one) == known.end())
+          throw InputError("Unknown technique '" + one + "'." + suggestion(one, known));
+        o.techniques.push_back(one);
+      }
     } else if (key == "resolution") {
       o.resolution = std::stoi(value);
     } else if (key == "light_size") {
@@ -174,8 +196,9 @@ Options read(int argc, char** argv) {
     } else if (key == "quick") {
       o.quick = value == "true";
     } else {
-      throw InputError("Unknown option '" + key + "'." +
-                       suggestion(key, {"k", "resolution", "light_size", "dynamic", "soup", "quick"}));
+      throw InputError(
+          "Unknown option '" + key + "'." +
+          suggestion(key, {"k", "techniques", "resolution", "light_size", "dynamic", "soup", "quick"}));
     }
   }
   if (o.scenes.empty())

@@ -50,6 +50,18 @@ TEST(Plot, WritesEachSceneAndAxisAsPdfAndSvgAndTheSameBytesAgain) {
     EXPECT_EQ(name.find_first_of("<>&\"'/ "), std::string::npos) << name;
 }
 
+TEST(Plot, ShowsSpeedUpsOverATechnique) {
+  ScratchFolder scratch;
+  test::write_synthetic_run(scratch / "run", {16, 12, false});
+  const std::string run = "'" + (scratch / "run").string() + "'";
+  ASSERT_EQ(plot(scratch, run + " --speed-up ray_tracing"), 0) << read_file(scratch / "log");
+  const auto files = files_of(scratch / "run" / "plots");
+  EXPECT_TRUE(files.contains("speed_up-ball-mask_size.svg"));
+  EXPECT_TRUE(files.contains("view_sample-ball-mask_size.svg"));
+  EXPECT_EQ(plot(scratch, run + " --speed-up ray_traced"), 2);
+  EXPECT_NE(read_file(scratch / "log").find("expected one of"), std::string::npos);
+}
+
 TEST(Plot, RefusesWhatIsNoResults) {
   ScratchFolder scratch;
   EXPECT_EQ(plot(scratch, "'" + (scratch / "nowhere").string() + "'"), 2);

@@ -48,8 +48,17 @@ class GearsRun {
  public:
   GearsRun(DeviceScene& scene, const ParamValues& given) : scene_(scene) {
     const TechniqueInfo info = gears_technique();
-    technique_ = info.make(resolve(info.params, given, "gears"));
+    const ParamValues params = resolve(info.params, given, "gears");
+    technique_ = info.make(params);
+    on_host_ = info.residence_with(params) == Residence::host;
     const std::size_t pixels = scene.view->host().pixel_count();
+    if (on_host_) {
+      host_ = {
+          std::vector<float>(pixels, -7.0F),
+          std::vector<uint32_t>(pixels * static_cast<std::size_t>(scene.samples.mask_words()), 0xdeadbeefU)};
+      build();
+      return;
+    }
     visibility_ = gpu::Buffer(scene.device, pixels * 4, gpu::Memory::device, "visibility");
     mask_ = gpu::Buffer(scene.device, pixels * static_cast<std::size_t>(scene.samples.mask_words()) * 4,
                         gpu::Memory::device, "masks");
@@ -65,11 +74,15 @@ class GearsRun {
     RenderInput in;
     in.scene_case = &scene_.scene_case;
     in.view_samples = scene_.view.get();
-    in.device = {&visibility_, &mask_};
+    if (on_host_)
+      in.host = {host_.visibility, host_.mask};
+    else
+      in.device = {&visibility_, &mask_};
     technique_->render(in, scene_.passes);
     scene_.passes.finish();
   }
   GearsPicture picture() {
+    if (on_host_) return host_;
     const std::size_t pixels = scene_.view->host().pixel_count();
     GearsPicture p{std::vector<float>(pixels),
                    std::vector<uint32_t>(pixels * static_cast<std::size_t>(scene_.samples.mask_words()))};
@@ -82,7 +95,9 @@ class GearsRun {
  private:
   DeviceScene& scene_;
   std::unique_ptr<Technique> technique_;
-  gpu::Buffer visibility_, mask_;
+  bool on_host_ = false;
+  gpu::Buffer visibility_, mask_;  // on the device, or
+  GearsPicture host_;
 };
 
 }  // namespace penumbra::testing
