@@ -35,44 +35,67 @@ inline constexpr std::array<T, 64 / sizeof(T)> rows_after_lanes = [] {
   return rows;
 }();
 
-// A crossing of many columns: every row learns by comparison whether it lies below, so that no counter is
-// touched on its own. `sums`: counters proper, without the running sum.
+// Crossings of many columns: every row learns by comparison whether it lies below, so that no counter is
+// touched on its own. `sums` are counters proper, without the running sum. Several at once, so that a vector
+// of counters is loaded and stored once for all of them.
 template <std::size_t pitch, class T>
-HWY_INLINE void add_below(const Crossings& in, std::size_t i, std::size_t places, T* sums) {
-  const Floats d;
-  const hn::CappedTag<T, 64 / sizeof(T)> dt;
-  const hn::Rebind<T, Floats> narrow;
-  const hn::RebindToSigned<Floats> di;
-  const std::size_t lanes = hn::Lanes(dt), rows_at_once = std::max<std::size_t>(1, lanes / pitch);
-  const auto all = [&](CrossingField f) HWY_ATTR { return set(in.v[f][i]); };
-  const RowStart start{all(cross_x0), all(cross_y0), all(cross_slope), all(cross_lo), all(cross_hi)};
-  const Vector first = all(cross_first), last = all(cross_last), never = set(127);
-  // Per column its first row, as often as a vector has rows.
-  alignas(64) T rows[std::max<std::size_t>(pitch, 64 / sizeof(T))];
-  for (std::size_t c = 0; c < pitch; c += hn::Lanes(d)) {
-    const Vector x = hn::Iota(d, static_cast<float>(c));
-    const Mask covered = hn::And(hn::Le(first, x), hn::Lt(x, last));
-    const auto row = hn::ConvertTo(di, hn::IfThenElse(covered, start.at(x), never));
-    if constexpr (sizeof(T) == 4) {
-      for (std::size_t k = 0; k < rows_at_once; ++k) hn::StoreU(row, di, rows + k * pitch + c);
-    } else {
-      const auto small = hn::DemoteTo(narrow, row);
-      for (std::size_t k = 0; k < rows_at_once; ++k) hn::StoreU(small, narrow, rows + k * pitch + c);
+class WideCrossings {
+ public:
+  HWY_INLINE WideCrossings(std::size_t places, T* sums) : places_(places), sums_(sums) {}
+  HWY_INLINE void add(const Crossings& in, std::size_t i) {
+    const Floats d;
+    const hn::Rebind<T, Floats> narrow;
+    const hn::RebindToSigned<Floats> di;
+    const auto all = [&](CrossingField f) HWY_ATTR { return set(in.v[f][i]); };
+    const RowStart start{all(cross_x0), all(cross_y0), all(cross_slope), all(cross_lo), all(cross_hi)};
+    const Vector first = all(cross_first), last = all(cross_last), never = set(127);
+    // Per column its first row, as often as a vector has rows.
+    T* const rows = rows_ + count_ * in_all;
+    for (std::size_t c = 0; c < pitch; c += hn::Lanes(d)) {
+      const Vector x = hn::Iota(d, static_cast<float>(c));
+      const Mask covered = hn::And(hn::Le(first, x), hn::Lt(x, last));
+      const auto row = hn::ConvertTo(di, hn::IfThenElse(covered, start.at(x), never));
+      for (std::size_t k = c; k < in_all; k += pitch) {
+        if constexpr (sizeof(T) == 4)
+          hn::StoreU(row, di, rows + k);
+        else
+          hn::StoreU(hn::DemoteTo(narrow, row), narrow, rows + k);
+      }
     }
+    weights_[count_++] = static_cast<T>(in.v[cross_weight][i]);
+    if (count_ == most) finish();
   }
-  const auto after_lane = hn::LoadU(dt, rows_after_lanes<pitch, T>.data());
-  const auto w = hn::Set(dt, static_cast<T>(in.v[cross_weight][i]));
-  const auto from = static_cast<std::size_t>(in.v[cross_lo][i]) * pitch / lanes * lanes;
-  for (std::size_t at = from; at < places; at += lanes) {
-    const auto after = hn::Add(after_lane, hn::Set(dt, static_cast<T>(at / pitch)));
-    const auto below = hn::Gt(after, hn::Load(dt, rows + at % pitch));
-    hn::Store(hn::Add(hn::Load(dt, sums + at), hn::IfThenElseZero(below, w)), dt, sums + at);
+  HWY_INLINE void finish() {
+    const hn::CappedTag<T, 64 / sizeof(T)> dt;
+    const std::size_t lanes = hn::Lanes(dt);
+    if (count_ == 0) return;
+    if (!any_) std::memset(sums_, 0, places_ * sizeof(T));
+    any_ = true;
+    const auto after_lane = hn::LoadU(dt, rows_after_lanes<pitch, T>.data());
+    for (std::size_t at = 0; at < places_; at += lanes) {
+      const auto after = hn::Add(after_lane, hn::Set(dt, static_cast<T>(at / pitch)));
+      auto sum = hn::Load(dt, sums_ + at);
+      const T* rows = rows_ + at % pitch;
+      for (std::size_t i = 0; i < count_; ++i, rows += in_all)
+        sum = hn::Add(sum, hn::IfThenElseZero(hn::Gt(after, hn::Load(dt, rows)), hn::Set(dt, weights_[i])));
+      hn::Store(sum, dt, sums_ + at);
+    }
+    count_ = 0;
   }
-}
+  bool any() const { return any_; }
+
+ private:
+  static constexpr std::size_t most = 32, in_all = std::max<std::size_t>(pitch, 64 / sizeof(T));
+  std::size_t places_, count_ = 0;
+  T* sums_;
+  bool any_ = false;
+  alignas(64) T rows_[most * in_all];
+  T weights_[most];
+};
 
 // Adds each crossing's weight at the first row below it, in each column it covers: a running sum down the
-// rows then gives the counters. Crossings of many columns go to `sums` instead, which is cleared when the
-// first one comes; returns whether one came.
+// rows then gives the counters. Crossings of many columns go to `sums` instead; returns whether there were
+// any, without which `sums` holds nothing.
 template <std::size_t pitch, class T>
 HWY_INLINE bool scatter(const Crossings& in, std::size_t places, T* counters, T* sums) {
   const Floats d;
@@ -82,7 +105,7 @@ HWY_INLINE bool scatter(const Crossings& in, std::size_t places, T* counters, T*
   const std::size_t vectors = places / hn::Lanes(hn::CappedTag<T, 64 / sizeof(T)>());
   const Vector many_columns = set(static_cast<float>(3 + vectors / 2));
   alignas(64) int32_t place[block_edges], weights[block_edges];
-  bool any_wide = false;
+  WideCrossings<pitch, T> wide_ones(places, sums);
   for (std::size_t o = 0; o < in.count; o += lanes) {
     const auto load = [&](CrossingField f) HWY_ATTR { return hn::LoadU(d, in.v[f].data() + o); };
     Vector x = load(cross_first);
@@ -92,10 +115,8 @@ HWY_INLINE bool scatter(const Crossings& in, std::size_t places, T* counters, T*
     const Mask wide = hn::And(active, hn::Ge(hn::Sub(last, x), many_columns));
     if (!hn::AllFalse(d, wide)) {
       active = hn::AndNot(wide, active);
-      if (!any_wide) std::memset(sums, 0, places * sizeof(T));
-      any_wide = true;
       for (uint32_t bits = bits_of(wide); bits; bits &= bits - 1)
-        add_below<pitch>(in, o + static_cast<std::size_t>(__builtin_ctz(bits)), places, sums);
+        wide_ones.add(in, o + static_cast<std::size_t>(__builtin_ctz(bits)));
     }
     if (hn::AllFalse(d, active)) continue;
     const RowStart start{load(cross_x0), load(cross_y0), load(cross_slope), load(cross_lo), load(cross_hi)};
@@ -111,7 +132,23 @@ HWY_INLINE bool scatter(const Crossings& in, std::size_t places, T* counters, T*
       active = hn::And(active, hn::Lt(x, last));
     } while (!hn::AllFalse(d, active));
   }
-  return any_wide;
+  wide_ones.finish();
+  return wide_ones.any();
+}
+
+// What all that counts down comes to: no counter falls lower.
+HWY_INLINE float fall_of(const Crossings& in) {
+  const Floats d;
+  Vector fall = hn::Zero(d);
+  const auto add = [&](CrossingField f, std::size_t count) HWY_ATTR {
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+      Vector w = hn::Max(hn::Neg(hn::LoadU(d, in.v[f].data() + i)), hn::Zero(d));
+      if (i + hn::Lanes(d) > count) w = hn::IfThenElseZero(hn::FirstN(d, count - i), w);
+      fall = hn::Add(fall, w);
+    }
+  };
+  add(cross_weight, in.count), add(event_weight, in.events);
+  return hn::GetLane(hn::SumOfLanes(d, fall));
 }
 
 template <class T>
@@ -125,9 +162,9 @@ HWY_INLINE T least_of(const T* values, std::size_t count) {  // count: a multipl
   return *std::min_element(last, last + lanes);
 }
 
-// The rows' candidates.
+// The rows' candidates. `bias` is added to all counters.
 template <std::size_t pitch, class T>
-HWY_NOINLINE void grid_candidates(const Crossings& in, int columns, int rows, T* counters, T* sums,
+HWY_NOINLINE void grid_candidates(const Crossings& in, int columns, int rows, T bias, T* counters, T* sums,
                                   uint64_t* words) {
   const std::size_t places = pitch * static_cast<std::size_t>(rows);
   // In whole vectors: one may hold several rows.
@@ -149,6 +186,7 @@ HWY_NOINLINE void grid_candidates(const Crossings& in, int columns, int rows, T*
   if (in.events)
     for (std::size_t c = 1; c < static_cast<std::size_t>(columns); ++c)
       top[c] = static_cast<T>(top[c] + top[c - 1]);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(columns); ++c) top[c] = static_cast<T>(top[c] + bias);
   std::fill(top + columns, top + pitch, std::numeric_limits<T>::max());
   for (std::size_t c = 0; c < pitch; c += lanes) {
     auto sum = hn::Load(d, top + c), low = hn::Set(d, std::numeric_limits<T>::max());

@@ -58,7 +58,7 @@ std::vector<std::size_t> chunks_of_runs(const std::vector<Keyed>& keys) {
 }
 
 // Numbers the distinct positions along the curve; gives each mesh vertex its number.
-std::vector<uint32_t> weld(const std::vector<Vec3f>& positions, EdgeTopology& out) {
+Array<uint32_t> weld(const std::vector<Vec3f>& positions, EdgeTopology& out) {
   std::vector<Keyed> keys = sorted_vertices(positions);
   const std::vector<std::size_t> start = chunks_of_runs(keys);
   const std::size_t chunks = start.size() - 1;
@@ -80,7 +80,7 @@ std::vector<uint32_t> weld(const std::vector<Vec3f>& positions, EdgeTopology& ou
       first[chunk + 1] += i == start[chunk] || is_new(i);
   });
   std::inclusive_scan(first.begin(), first.end(), first.begin());
-  std::vector<uint32_t> welded(keys.size());
+  Array<uint32_t> welded(keys.size());
   out.mesh_vertex.resize(first.back());
   parallel_for(chunks, 1, [&](std::size_t chunk, std::size_t) {
     uint32_t number = first[chunk];
@@ -103,7 +103,7 @@ bool towards_lower(uint64_t h) { return (h & 1) != 0; }
 
 struct HalfEdges {
   std::vector<uint32_t> start;  // of a vertex's half-edges in `all`; one past the last vertex too
-  std::vector<uint64_t> all;
+  Array<uint64_t> all;
 };
 
 HalfEdges file_half_edges(EdgeTopology& out) {
@@ -242,7 +242,7 @@ void list_edges(HalfEdges& h, const std::vector<Vec3f>& positions, EdgeTopology&
 
 EdgeTopology find_edges(const Geometry& geometry) {
   EdgeTopology out;
-  const std::vector<uint32_t> welded = weld(geometry.positions, out);
+  const Array<uint32_t> welded = weld(geometry.positions, out);
   out.corners.resize(geometry.indices.size());
   each_chunk(geometry.indices.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) out.corners[i] = welded[geometry.indices[i]];

@@ -1,6 +1,7 @@
 // Which edges a mesh has and which faces meet there: made once, as long as the mesh only moves.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "scene/scene.h"
@@ -18,10 +19,26 @@ struct Edge {
   bool open() const { return second_face() == face; }
 };
 
+// Leaves new elements as they are: filling large arrays that threads are about to write would be one thread's
+// work, and most of it the first touch of their memory.
+template <class T>
+struct Unfilled : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = Unfilled<U>;
+  };
+  template <class U>
+  void construct(U* p) noexcept {
+    ::new (static_cast<void*>(p)) U;
+  }
+};
+template <class T>
+using Array = std::vector<T, Unfilled<T>>;
+
 struct EdgeTopology {
-  std::vector<uint32_t> mesh_vertex;  // of a welded vertex: a mesh vertex at its position
-  std::vector<uint32_t> corners;      // welded vertices, 3 per triangle
-  std::vector<Edge> edges;  // neighbours in space are neighbours in the list; the long ones come last
+  Array<uint32_t> mesh_vertex;  // of a welded vertex: a mesh vertex at its position
+  Array<uint32_t> corners;      // welded vertices, 3 per triangle
+  Array<Edge> edges;  // neighbours in space are neighbours in the list; the long ones come last
   std::size_t open = 0, inconsistent = 0, non_manifold = 0, dropped_faces = 0;  // for the room's counters
 
   uint64_t bytes() const {

@@ -131,22 +131,26 @@ HWY_INLINE bool candidates_of(const LightSpace& light, const ViewPoint& p, Scrat
   const std::size_t most = 2 * (c.count + c.events);
   if constexpr (grid) {
     const int w = light.columns, h = light.rows;
-    const auto count_in = [&](auto* counters) HWY_ATTR {
+    const auto count_in = [&](auto* counters, auto bias) HWY_ATTR {
       auto* const sums = reinterpret_cast<decltype(counters)>(scratch.sums);
       if (w <= 16)
-        grid_candidates<16>(c, w, h, counters, sums, words);
+        grid_candidates<16>(c, w, h, bias, counters, sums, words);
       else if (w <= 32)
-        grid_candidates<32>(c, w, h, counters, sums, words);
+        grid_candidates<32>(c, w, h, bias, counters, sums, words);
       else
-        grid_candidates<64>(c, w, h, counters, sums, words);
+        grid_candidates<64>(c, w, h, bias, counters, sums, words);
     };
-    scratch.counts.wide += most > 126;
+    // Counters lie between -fall and most - fall, and 127 is for places that no sample owns.
+    scratch.counts.wide += most > 252;
     if (most <= 126)
-      count_in(scratch.counters_8);
+      count_in(scratch.counters_8, int8_t{0});
+    else if (most <= 252)
+      count_in(scratch.counters_8, static_cast<int8_t>(fall_of(c) - 127));
     else if (most <= 32766)
-      count_in(scratch.counters_16);
+      count_in(scratch.counters_16, int16_t{0});
     else
-      grid_candidates<64>(c, w, h, scratch.counters_32, reinterpret_cast<int32_t*>(scratch.sums), words);
+      grid_candidates<64>(c, w, h, int32_t{0}, scratch.counters_32, reinterpret_cast<int32_t*>(scratch.sums),
+                          words);
   } else {
     const bool moves = !light.planar;
     set_candidates(c, moves ? scratch.projected_x.data() : light.points_x.data(),

@@ -29,36 +29,93 @@ HWY_INLINE Vector dot3(const Vector3& a, const Vector3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-// Half-spaces of up to 16 triangles on the rows of a grid: column >= slope[0] row + offset[0] and <= slope[1]
-// row + offset[1]; edges, and for triangles that cross the light's plane their own plane.
+// A half-space on the rows of a grid: column >= slope row + offset, or <= where `upper`.
+struct Bound {
+  Vector slope, offset;
+  Mask upper;
+};
+inline constexpr float far_away = 1e30F, least = 1e-20F;
+
+// nx (i - px) + ny (j - py) + constant = 0, solved for column i of row j; a tiny nx keeps its sign.
+HWY_INLINE Bound bound_of(Vector nx, Vector ny, Vector constant, Vector volume, const ViewPoint& p) {
+  const Vector not_zero = hn::IfThenElse(hn::Lt(hn::Abs(nx), set(least)), hn::CopySign(set(least), nx), nx);
+  const Vector inverse = hn::Div(set(-1), not_zero), slope = hn::Mul(ny, inverse);
+  const Vector offset = hn::Add(hn::Sub(hn::Mul(constant, inverse), hn::Mul(slope, set(p.y))), set(p.x));
+  return {slope, offset, sign_bit(hn::Xor(nx, volume))};
+}
+
+struct Columns {
+  Vector from, to;
+};
+HWY_INLINE Columns on_row(const Bound& b, Vector row, const Columns& before) {
+  const Vector at = hn::Add(hn::Mul(b.slope, row), b.offset);
+  return {hn::IfThenElse(b.upper, before.from, hn::Max(before.from, at)),
+          hn::IfThenElse(b.upper, hn::Min(before.to, at), before.to)};
+}
+
+// The bits of the columns [from, to], whole numbers, in a part of 32 columns; only where `some`.
+HWY_INLINE hn::Vec<Words> bits_of_columns(const Columns& c, std::size_t part, Mask* some) {
+  const Floats d;
+  const hn::RebindToSigned<Floats> di;
+  const Words du;
+  const Vector base = set(static_cast<float>(32 * part)), last = set(31);
+  const Vector lo = hn::Max(hn::Sub(c.from, base), hn::Zero(d)), hi = hn::Min(hn::Sub(c.to, base), last);
+  *some = hn::And(*some, hn::Le(lo, hi));
+  const auto skip_low = hn::BitCast(du, hn::ConvertTo(di, hn::Min(lo, last)));
+  const auto skip_high = hn::BitCast(du, hn::ConvertTo(di, hn::Sub(last, hn::Max(hi, hn::Zero(d)))));
+  const auto ones = hn::Set(du, ~0U);
+  return hn::And(hn::Shl(ones, skip_low), hn::Shr(ones, skip_high));
+}
+
+// Triangles of few rows: lanes are triangles, one row of each at a time.
+template <int edges>
+HWY_INLINE void fill_short(const Bound* bounds, const Columns& columns, Vector first_row, Vector last_row,
+                           Mask use, const LightView& light, uint32_t* mask) {
+  const Floats d;
+  const hn::RebindToSigned<Floats> di;
+  const Words du;
+  alignas(64) int32_t rows[block_size];
+  alignas(64) uint32_t words[block_size];
+  for (Vector row = first_row; !hn::AllFalse(d, use);) {
+    Columns c = columns;
+    for (int k = 0; k < edges; ++k) c = on_row(bounds[k], row, c);
+    c = {hn::Ceil(c.from), hn::Floor(c.to)};
+    const Mask covers = hn::And(use, hn::Le(c.from, c.to));
+    if (!hn::AllFalse(d, covers)) {
+      hn::Store(hn::ConvertTo(di, row), di, rows);
+      for (std::size_t part = 0; part < light.parts; ++part) {
+        Mask some = covers;
+        hn::Store(bits_of_columns(c, part, &some), du, words);
+        for (uint32_t bits = bits_of(some); bits; bits &= bits - 1) {
+          const auto l = static_cast<std::size_t>(__builtin_ctz(bits));
+          mask[part * most_rows + static_cast<std::size_t>(rows[l])] |= words[l];
+        }
+      }
+    }
+    row = hn::Add(row, set(1));
+    use = hn::And(use, hn::Le(row, last_row));
+  }
+}
+
+// The half-spaces of up to 16 triangles, for one triangle at a time: [0] from, [1] to.
 struct alignas(64) Bounds {
   float slope[2][4][block_size], offset[2][4][block_size];
   float first_column[block_size], last_column[block_size];
   int32_t first_row[block_size], last_row[block_size];
 };
-inline constexpr float far_away = 1e30F, least = 1e-20F;
-
-// nx (i - px) + ny (j - py) + constant = 0, solved for column i of row j; a tiny nx keeps its sign.
-HWY_INLINE void store_bound(Vector nx, Vector ny, Vector constant, Vector volume, const ViewPoint& p,
-                            int edge, std::size_t at, Bounds& out) {
+HWY_INLINE void store_bound(const Bound& b, int edge, std::size_t at, Bounds& out) {
   const Floats d;
-  const Vector not_zero = hn::IfThenElse(hn::Lt(hn::Abs(nx), set(least)), hn::CopySign(set(least), nx), nx);
-  const Vector inverse = hn::Div(set(-1), not_zero), slope = hn::Mul(ny, inverse);
-  const Vector offset = hn::Add(hn::Sub(hn::Mul(constant, inverse), hn::Mul(slope, set(p.y))), set(p.x));
-  const Mask upper = sign_bit(hn::Xor(nx, volume));
-  hn::Store(hn::IfThenZeroElse(upper, slope), d, out.slope[0][edge] + at);
-  hn::Store(hn::IfThenElse(upper, set(-far_away), offset), d, out.offset[0][edge] + at);
-  hn::Store(hn::IfThenElseZero(upper, slope), d, out.slope[1][edge] + at);
-  hn::Store(hn::IfThenElse(upper, offset, set(far_away)), d, out.offset[1][edge] + at);
+  hn::Store(hn::IfThenZeroElse(b.upper, b.slope), d, out.slope[0][edge] + at);
+  hn::Store(hn::IfThenElse(b.upper, set(-far_away), b.offset), d, out.offset[0][edge] + at);
+  hn::Store(hn::IfThenElseZero(b.upper, b.slope), d, out.slope[1][edge] + at);
+  hn::Store(hn::IfThenElse(b.upper, b.offset, set(far_away)), d, out.offset[1][edge] + at);
 }
 
-// Rows of one triangle into the mask.
-template <bool crossing>
-HWY_INLINE void fill_rows(const Bounds& e, std::size_t t, const LightView& light, uint32_t* mask) {
+// A triangle of many rows: lanes are rows.
+template <int edges>
+HWY_INLINE void fill_tall(const Bounds& e, std::size_t t, const LightView& light, uint32_t* mask) {
   const Floats d;
-  const hn::RebindToSigned<Floats> di;
   const Words du;
-  constexpr int edges = crossing ? 4 : 3;
   const auto lanes = static_cast<int32_t>(hn::Lanes(d));
   Vector slope[2][edges], offset[2][edges];
   for (int s = 0; s < 2; ++s)
@@ -66,27 +123,23 @@ HWY_INLINE void fill_rows(const Bounds& e, std::size_t t, const LightView& light
       slope[s][k] = set(e.slope[s][k][t]), offset[s][k] = set(e.offset[s][k][t]);
   const Vector c0 = set(e.first_column[t]), c1 = set(e.last_column[t]);
   const Vector r0 = set(static_cast<float>(e.first_row[t])), r1 = set(static_cast<float>(e.last_row[t]));
-  const auto ones = hn::Set(du, ~0U);
   for (int32_t r = e.first_row[t] / lanes * lanes; r <= e.last_row[t]; r += lanes) {
     const Vector row = hn::Iota(d, static_cast<float>(r));
-    const auto on_row = [&](int s, int k)
-                            HWY_ATTR { return hn::Add(hn::Mul(slope[s][k], row), offset[s][k]); };
-    Vector from = hn::Max(c0, on_row(0, 0)), to = hn::Min(c1, on_row(1, 0));
-    for (int k = 1; k < edges; ++k) from = hn::Max(from, on_row(0, k)), to = hn::Min(to, on_row(1, k));
-    from = hn::Ceil(from), to = hn::Floor(to);
+    const auto at = [&](int s, int k) HWY_ATTR { return hn::Add(hn::Mul(slope[s][k], row), offset[s][k]); };
+    Columns c{c0, c1};
+    for (int k = 0; k < edges; ++k) c.from = hn::Max(c.from, at(0, k)), c.to = hn::Min(c.to, at(1, k));
+    c = {hn::Ceil(c.from), hn::Floor(c.to)};
     const Mask rows = hn::And(hn::Ge(row, r0), hn::Le(row, r1));
     for (std::size_t part = 0; part < light.parts; ++part) {
-      const Vector base = set(static_cast<float>(32 * part)), last = set(31);
-      const Vector lo = hn::Max(hn::Sub(from, base), hn::Zero(d)), hi = hn::Min(hn::Sub(to, base), last);
-      const Mask some = hn::And(rows, hn::Le(lo, hi));
-      const auto skip_low = hn::BitCast(du, hn::ConvertTo(di, hn::Min(lo, last)));
-      const auto skip_high = hn::BitCast(du, hn::ConvertTo(di, hn::Sub(last, hn::Max(hi, hn::Zero(d)))));
-      const auto bits = hn::And(hn::Shl(ones, skip_low), hn::Shr(ones, skip_high));
-      uint32_t* at = mask + part * most_rows + static_cast<std::size_t>(r);
-      hn::Store(hn::Or(hn::Load(du, at), hn::IfThenElseZero(hn::RebindMask(du, some), bits)), du, at);
+      Mask some = rows;
+      const auto bits = bits_of_columns(c, part, &some);
+      uint32_t* to = mask + part * most_rows + static_cast<std::size_t>(r);
+      hn::Store(hn::Or(hn::Load(du, to), hn::IfThenElseZero(hn::RebindMask(du, some), bits)), du, to);
     }
   }
 }
+
+inline constexpr float tall_rows = 5;
 
 // `crossing`: triangles that may cross the light's plane.
 template <bool crossing>
@@ -123,23 +176,27 @@ HWY_INLINE void rasterise_on_grid(const Block& block, const ViewPoint& p, const 
     use = hn::And(use, hn::And(hn::Le(c0, c1), hn::Le(r0, r1)));
     if (hn::AllFalse(d, use)) continue;
 
-    Bounds e;
+    constexpr int edges = crossing ? 4 : 3;
     const Vector3 ab = edge_normal(a, b), bc = edge_normal(b, c), ca = edge_normal(c, a);
     const Vector volume = dot3(ab, c);
-    store_bound(ab.x, ab.y, hn::Mul(ab.z, pz), volume, p, 0, i, e);
-    store_bound(bc.x, bc.y, hn::Mul(bc.z, pz), volume, p, 1, i, e);
-    store_bound(ca.x, ca.y, hn::Mul(ca.z, pz), volume, p, 2, i, e);
+    Bound bounds[edges] = {bound_of(ab.x, ab.y, hn::Mul(ab.z, pz), volume, p),
+                           bound_of(bc.x, bc.y, hn::Mul(bc.z, pz), volume, p),
+                           bound_of(ca.x, ca.y, hn::Mul(ca.z, pz), volume, p)};
     if constexpr (crossing) {
       const Vector3 n = edge_normal(minus(b, a), minus(c, a));
-      store_bound(n.x, n.y, hn::Sub(hn::Mul(n.z, pz), dot3(n, a)), volume, p, 3, i, e);
+      bounds[3] = bound_of(n.x, n.y, hn::Sub(hn::Mul(n.z, pz), dot3(n, a)), volume, p);
     }
+    scratch.counts.pairs += hn::CountTrue(d, use);
+    const Mask tall = hn::And(use, hn::Ge(hn::Sub(r1, r0), set(tall_rows)));
+    fill_short<edges>(bounds, {c0, c1}, r0, r1, hn::AndNot(tall, use), light, scratch.mask);
+    if (hn::AllFalse(d, tall)) continue;
+    Bounds e;
+    for (int k = 0; k < edges; ++k) store_bound(bounds[k], k, i, e);
     hn::Store(c0, d, e.first_column + i), hn::Store(c1, d, e.last_column + i);
     hn::Store(hn::ConvertTo(di, r0), di, e.first_row + i),
         hn::Store(hn::ConvertTo(di, r1), di, e.last_row + i);
-    for (uint32_t bits = bits_of(use); bits; bits &= bits - 1) {
-      ++scratch.counts.pairs;
-      fill_rows<crossing>(e, i + static_cast<std::size_t>(__builtin_ctz(bits)), light, scratch.mask);
-    }
+    for (uint32_t bits = bits_of(tall); bits; bits &= bits - 1)
+      fill_tall<edges>(e, i + static_cast<std::size_t>(__builtin_ctz(bits)), light, scratch.mask);
   }
 }
 

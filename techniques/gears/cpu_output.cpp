@@ -28,6 +28,8 @@ void MaskOutput::set_light(const Light& light, const LightSamples& samples, cons
   columns_ = layout.grid ? static_cast<std::size_t>(layout.columns) : 32;
   rows_ = layout.grid ? static_cast<std::size_t>(layout.rows) : (count + 31) / 32;
   words_ = static_cast<std::size_t>(samples.mask_words());
+  used_ = (rows_ + block_size - 1) / block_size * block_size;  // whole vectors
+  packed_ = columns_ <= 32 && 32 % columns_ == 0 && count % 32 == 0;
   std::fill(std::begin(unowned_), std::end(unowned_), ~0U);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t r = i / columns_, c = i % columns_;
@@ -51,7 +53,8 @@ bool MaskOutput::shines_on(Vec3f position) const {
 
 // The shared horizon rule: a light sample with dot(Ng, L - P) <= 0 is blocked, P being the position.
 bool MaskOutput::begin(uint32_t pixel, uint32_t* mask) const {
-  std::copy(std::begin(unowned_), std::end(unowned_), mask);
+  std::copy_n(unowned_, used_, mask);
+  if (columns_ > 32) std::copy_n(unowned_ + most_rows, used_, mask + most_rows);
   const Vec3f n = view_.geometric_normal[pixel].xyz();
   Vec3f p = view_.position[pixel].xyz();
   if (!shines_on(p)) {
@@ -81,11 +84,20 @@ uint64_t MaskOutput::row(const uint32_t* mask, std::size_t r) const {
   return (mask[r] & ~unowned_[r]) | high << 32;
 }
 
-void MaskOutput::write(uint32_t pixel, const uint32_t* mask) const {
-  uint32_t* out = &mask_[pixel * words_];
+// Rows that fill 32 bits together: those of the usual grids, and sets.
+void MaskOutput::write_packed(const uint32_t* mask, uint32_t* out) const {
+  const std::size_t rows = 32 / columns_;
+  const uint32_t own = ~0U >> (32 - columns_);
+  for (std::size_t w = 0; w < words_; ++w, mask += rows) {
+    uint32_t bits = 0;
+    for (std::size_t r = 0; r < rows; ++r) bits |= (mask[r] & own) << (r * columns_);
+    out[w] = bits;
+  }
+}
+
+void MaskOutput::write_unpacked(const uint32_t* mask, uint32_t* out) const {
   std::size_t word = 0, pending_bits = 0;
   uint64_t pending = 0;
-  uint32_t blocked = 0;
   for (std::size_t r = 0; r < rows_; ++r) {
     const uint64_t bits = row(mask, r);
     pending |= bits << pending_bits;
@@ -99,8 +111,16 @@ void MaskOutput::write(uint32_t pixel, const uint32_t* mask) const {
     }
   }
   if (word < words_) out[word] = static_cast<uint32_t>(pending);
+}
+
+void MaskOutput::write(uint32_t pixel, const uint32_t* mask) const {
+  uint32_t* out = &mask_[pixel * words_];
+  packed_ ? write_packed(mask, out) : write_unpacked(mask, out);
   if (samples_.uniform_weights) {
-    for (std::size_t w = 0; w < words_; ++w) blocked += bit_count(out[w]);
+    uint32_t blocked = 0;
+    std::size_t w = 0;
+    for (; w + 1 < words_; w += 2) blocked += bit_count(out[w] | static_cast<uint64_t>(out[w + 1]) << 32);
+    if (w < words_) blocked += bit_count(out[w]);
     const auto all = static_cast<uint32_t>(samples_.points.size());
     visibility_[pixel] = static_cast<float>(all - blocked) / static_cast<float>(all);
     return;

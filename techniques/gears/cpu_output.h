@@ -24,13 +24,16 @@ class MaskOutput final : public Masks {
  private:
   bool shines_on(Vec3f position) const;
   uint64_t row(const uint32_t* mask, std::size_t r) const;
+  void write_packed(const uint32_t* mask, uint32_t* out) const;
+  void write_unpacked(const uint32_t* mask, uint32_t* out) const;
 
   Light light_;
   LightSamples samples_;
   MaskLayout layout_;
   Box bounds_;
   float cone_cosine_ = -1;
-  std::size_t rows_ = 1, columns_ = 1, words_ = 1;
+  std::size_t rows_ = 1, columns_ = 1, words_ = 1, used_ = 1;
+  bool packed_ = false;
   uint32_t unowned_[most_words] = {};
   ViewSamplesHost view_;
   std::span<float> visibility_;

@@ -119,17 +119,17 @@ HWY_INLINE void choose_listed(const Occluders& scene, const PointBox& box, const
 
 template <bool grid, bool crossing>
 HWY_INLINE void rasterise(const Block& block, const ViewPoint& p, const LightView& light,
-                          [[maybe_unused]] const Hull* hull, Scratch& scratch) {
+                          [[maybe_unused]] const Window<grid>& window, Scratch& scratch) {
   if constexpr (grid)
     rasterise_on_grid<crossing>(block, p, light, scratch);
   else
-    rasterise_on_set(block, p, light, *hull, scratch);
+    rasterise_on_set(block, p, light, window, scratch);
 }
 
 // Blocks whose boxes may hide a light sample that is still open.
 template <bool grid>
 HWY_INLINE void rasterise_found(const Occluders& scene, const ViewPoint& p, const PointBox& box,
-                                const Hull* hull, Scratch& scratch) {
+                                const Window<grid>& window, Scratch& scratch) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
   const LightView& light = *scene.light;
@@ -145,7 +145,7 @@ HWY_INLINE void rasterise_found(const Occluders& scene, const ViewPoint& p, cons
       hn::Store(hn::ConvertTo(di, rect.c0), di, c0), hn::Store(hn::ConvertTo(di, rect.c1), di, c1);
       hn::Store(hn::ConvertTo(di, rect.r0), di, r0), hn::Store(hn::ConvertTo(di, rect.r1), di, r1);
     } else {
-      bits = bits_of(hull->meets(boxes));
+      bits = bits_of(window.meets(boxes));
     }
     bool entered = false;
     for (; bits; bits &= bits - 1) {
@@ -154,7 +154,7 @@ HWY_INLINE void rasterise_found(const Occluders& scene, const ViewPoint& p, cons
         if (!is_open(scratch.mask, c0[l], c1[l], r0[l], r1[l], light.parts)) continue;
       ++scratch.counts.blocks_entered;
       entered = true;
-      rasterise<grid, false>(scene.blocks[scratch.found[o + l]], p, light, hull, scratch);
+      rasterise<grid, false>(scene.blocks[scratch.found[o + l]], p, light, window, scratch);
     }
     if (entered && all_blocked<grid>(light, scratch.mask)) return;
   }
@@ -166,11 +166,11 @@ HWY_INLINE void make_mask(const Occluders& scene, const ViewPoint& p, Scratch& s
   const LightView& light = *scene.light;
   if (scene.masks->begin(p.pixel, scratch.mask)) {
     const PointBox box = box_of(&p, 1);
-    const Hull hull(box, light);
+    const Window<grid> window(box, light);
     if constexpr (!grid) look_at_set(light, p, scratch);
     for (std::size_t i = 0; i < scratch.listed_count; i += block_size)
-      rasterise<grid, true>(scratch.listed[i / block_size], p, light, &hull, scratch);
-    if (scratch.listed_count == 0 || !all_blocked<grid>(light, scratch.mask)) rest(box, &hull);
+      rasterise<grid, true>(scratch.listed[i / block_size], p, light, window, scratch);
+    if (scratch.listed_count == 0 || !all_blocked<grid>(light, scratch.mask)) rest(box, window);
   }
   scene.masks->write(p.pixel, scratch.mask);
 }
@@ -184,9 +184,9 @@ HWY_INLINE void walk_tree_as(const Occluders& scene, const ViewPoint* points, st
   choose_listed<grid>(scene, box, window, scratch);
   ++scratch.counts.groups, scratch.counts.view_samples += count;
   for (std::size_t i = 0; i < count; ++i)
-    make_mask<grid>(scene, points[i], scratch, [&](const PointBox& at, const Hull* hull) HWY_ATTR {
-      rasterise_found<grid>(scene, points[i], at, hull, scratch);
-    });
+    make_mask<grid>(scene, points[i], scratch,
+                    [&](const PointBox& at, const Window<grid>& of_sample)
+                        HWY_ATTR { rasterise_found<grid>(scene, points[i], at, of_sample, scratch); });
 }
 
 template <bool grid>
@@ -197,9 +197,9 @@ HWY_INLINE void walk_cell_as(const Occluders& scene, std::size_t triangles, cons
   choose_listed<grid>(scene, box, window, scratch);
   ++scratch.counts.groups, scratch.counts.view_samples += count;
   for (std::size_t i = 0; i < count; ++i)
-    make_mask<grid>(scene, points[i], scratch, [&](const PointBox&, const Hull* hull) HWY_ATTR {
+    make_mask<grid>(scene, points[i], scratch, [&](const PointBox&, const Window<grid>& of_sample) HWY_ATTR {
       for (std::size_t t = 0; t < triangles; t += block_size) {
-        rasterise<grid, false>(scratch.cell[t / block_size], points[i], *scene.light, hull, scratch);
+        rasterise<grid, false>(scratch.cell[t / block_size], points[i], *scene.light, of_sample, scratch);
         if (t % (4 * block_size) == 0 && all_blocked<grid>(*scene.light, scratch.mask)) return;
       }
     });

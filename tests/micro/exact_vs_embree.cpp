@@ -1,7 +1,7 @@
 // The exact techniques that run on the host, all their per-frame stages, against Embree's fastest packets in
 // one run, on the study's scenes, and what each stage takes:
 //   micro_exact_vs_embree [SCENE ...] [k=16,32] [techniques=depth,clusters,triangles] [resolution=512]
-//   [light_size=D] [dynamic=true] [soup=true] [quick=true]
+//   [light_size=D] [dynamic=true] [soup=true] [quick=true] [packets=8,16] [avx2=true]
 //   [--benchmark_repetitions=5] [--benchmark_enable_random_interleaving=true]
 // techniques: depth_complexity_sampling, and gears with backend=cpu and either assignment; depth and clusters
 // by default. Each stage's milliseconds are printed as counters; find_edges_once and order_triangles_once are
@@ -10,9 +10,11 @@
 // coherence hints (dynamic: with its own choice of packet, at its low, medium and refitted build qualities):
 // the fastest counts. light_size: the rectangle's diagonal. dynamic: all sides take the vertices anew each
 // frame, and building counts. soup: each triangle shrunk by a thousandth, so that every edge is open. quick:
-// one opponent, ray_tracing as it chooses for itself. The table ends with the ratios of the medians.
+// one opponent, ray_tracing as it chooses for itself. packets: those of the opponent. avx2: the techniques,
+// not Embree, without AVX-512. The table ends with the ratios of the medians.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +36,8 @@ struct Options {
   std::vector<std::string> techniques = {"depth", "clusters"};
   int resolution = 512;
   float light_size = -1;
-  bool dynamic = false, soup = false, quick = false;
+  bool dynamic = false, soup = false, quick = false, avx2 = false;
+  std::vector<std::string> packets = {"8", "16"};
 };
 
 // A technique that runs on the host, with what its passes took since the last call.
@@ -117,7 +120,7 @@ void add(gpu::Device& device, const Options& options, const std::string& name, i
   else if (options.quick)
     add_one("embree", "ray_tracing", {});
   else
-    for (const std::string packet : {"8", "16"})
+    for (const std::string& packet : options.packets)
       for (const std::string coherent : {"on", "off"})
         add_one("embree_" + packet + "_coherent_" + coherent, "ray_tracing",
                 {{"packet", packet}, {"coherent", coherent}});
@@ -195,10 +198,16 @@ Options read(int argc, char** argv) {
       o.soup = value == "true";
     } else if (key == "quick") {
       o.quick = value == "true";
+    } else if (key == "avx2") {
+      o.avx2 = value == "true";
+    } else if (key == "packets") {
+      o.packets.clear();
+      std::istringstream list(value);
+      for (std::string one; std::getline(list, one, ',');) o.packets.push_back(one);
     } else {
-      throw InputError(
-          "Unknown option '" + key + "'." +
-          suggestion(key, {"k", "techniques", "resolution", "light_size", "dynamic", "soup", "quick"}));
+      throw InputError("Unknown option '" + key + "'." +
+                       suggestion(key, {"k", "techniques", "resolution", "light_size", "dynamic", "soup",
+                                        "quick", "packets", "avx2"}));
     }
   }
   if (o.scenes.empty())
@@ -215,6 +224,8 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   try {
     const Options options = read(argc, argv);
+    // Smaller is wider.
+    if (options.avx2) hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & ~(HWY_AVX2 - 1));
     gpu::Device device{gpu::DeviceOptions{}};
     std::map<std::string, Contest> contests;
     for (const std::string& name : options.scenes) {

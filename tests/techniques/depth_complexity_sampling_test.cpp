@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "techniques/common/exact_choice.h"
 #include "techniques/depth_complexity_sampling/kernel.h"
 #include "tests/support/allocation_count.h"
 #include "tests/support/host_view.h"
@@ -186,6 +187,19 @@ TEST(DepthComplexitySampling, CountsManyLayers) {
   testing::expect_the_reference(scene, run.mask, "layers", 1e-4);
 }
 
+// A light so near before the ground that P' of every ground sample lies behind its plane, and P before it.
+TEST(DepthComplexitySampling, TakesViewSamplesInTheLightsPlane) {
+  Frame f = soup_frame(40);
+  testing::add_box(f.geometry, {-0.2F, 0, -0.3F}, {0.2F, 0.4F, 0.1F});
+  f.light = testing::rectangle_light({1.5F, 1e-6F, 0}, {1.5F, -1, 0}, 0.8F, 0.5F);
+  DeviceScene scene(device(), std::move(f), 97, 71, {8, 8});
+  DepthComplexityRun run(scene);
+  run.build();
+  run.render();
+  EXPECT_GT(run.counter("view_samples_traced"), 1000);
+  testing::expect_the_reference(scene, run.mask, "in_the_plane", 0);
+}
+
 TEST(DepthComplexitySampling, GivesTheSameMasksOnEveryInstructionSet) {
   Frame f = soup_frame();
   f.light = testing::rectangle_light({1.5F, 1.2F, -1}, {0, 0.5F, 0}, 0.8F, 0.5F);
@@ -204,6 +218,31 @@ TEST(DepthComplexitySampling, GivesTheSameMasksOnEveryInstructionSet) {
     hwy::SetSupportedTargetsForTest(0);
     EXPECT_GT(names.size(), 1U);
   }
+}
+
+// A closed mesh has few edges that can be silhouettes, a soup has nothing else: the advice follows.
+TEST(ExactChoice, FollowsTheShareOfPotentialSilhouettes) {
+  const auto share_of = [](Geometry g) {
+    Frame f;
+    f.geometry = std::move(g);
+    testing::add_ground(f.geometry, 2);
+    f.light = testing::rectangle_light({1.5F, 3, -1}, {0, 0, 0}, 0.8F, 0.5F);
+    f.camera.eye = {0, 1.5F, 3.5F}, f.camera.target = {0, 0.4F, 0};
+    DeviceScene scene(device(), std::move(f), 32, 32, {4, 4});
+    DepthComplexityRun run(scene);
+    run.build();
+    run.render();
+    return run.counter("potential_silhouette_share");
+  };
+  Geometry closed;
+  for (int i = 0; i < 20; ++i) {
+    const float x = -0.9F + 0.09F * static_cast<float>(i);
+    testing::add_box(closed, {x, 0.2F, -0.1F}, {x + 0.05F, 0.5F, 0.1F});
+  }
+  Geometry soup;
+  testing::add_soup(soup, {-0.8F, 0.1F, -0.8F}, {0.8F, 1, 0.8F}, 100, 0.3F, 11);
+  EXPECT_EQ(expected_fastest(share_of(closed)), "depth_complexity_sampling");
+  EXPECT_EQ(expected_fastest(share_of(soup)), "gears");
 }
 
 TEST(DepthComplexitySampling, FollowsMovingGeometry) {
