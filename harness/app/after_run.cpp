@@ -39,16 +39,18 @@ int run_script(const std::vector<std::string>& command) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-void make_plots(const fs::path& folder, const Context& context) {
+int make_plots(const fs::path& folder, const Context& context) {
   fs::path script;
   try {
     script = context.find_file("scripts/plot");
   } catch (const InputError&) {
-    return;  // a program installed without its scripts
+    return exit_done;  // a program installed without its scripts
   }
-  if (const int code = run_script({script.string(), folder.string()}); code != 0)
+  const int code = run_script({script.string(), folder.string()});
+  if (code != 0)
     fmt::print(stderr, "penumbra: the plots were not made: {} ended with exit code {}.\n", script.string(),
                code);
+  return code == exit_cannot_write ? exit_cannot_write : exit_done;
 }
 
 void make_report([[maybe_unused]] const fs::path& folder) {
@@ -61,16 +63,20 @@ void make_report([[maybe_unused]] const fs::path& folder) {
 
 }  // namespace
 
-void after_run(const fs::path& folder, const Context& context, bool complete) {
+int after_run(const fs::path& folder, const Context& context, bool complete) {
   fmt::print("{}", run::table([&](const auto& visit) { run::for_each_point(folder, visit); }));
   fmt::print("results: {}\n", (folder / "results.json").string());
-  if (!complete) return;
-  make_plots(folder, context);
+  if (!complete) return exit_done;
+  int code = make_plots(folder, context);
   try {
     make_report(folder);
+  } catch (const WriteError& e) {
+    fmt::print(stderr, "penumbra: the report was not made: {}\n", e.what());
+    code = exit_cannot_write;
   } catch (const std::exception& e) {
     fmt::print(stderr, "penumbra: the report was not made: {}\n", e.what());
   }
+  return code;
 }
 
 }  // namespace penumbra

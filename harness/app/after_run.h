@@ -7,7 +7,8 @@
 namespace penumbra {
 
 // Prints the table of `folder`'s results and, when `complete`, makes plots and report. They are made from the
-// results, so that a failure of theirs is a message and costs the run nothing.
-void after_run(const std::filesystem::path& folder, const Context& context, bool complete);
+// results, so that a failure of theirs is a message and costs the run nothing. Returns exit_cannot_write when
+// plots or report could not be written (a full disk), else exit_done.
+int after_run(const std::filesystem::path& folder, const Context& context, bool complete);
 
 }  // namespace penumbra

@@ -24,10 +24,10 @@ void add_merge(CLI::App& app, Context& context) {
   sub->callback([options, &context] {
     const run::MergeOutcome outcome =
         run::merge_runs({options->runs.begin(), options->runs.end()}, options->out);
-    after_run(options->out, context, !options->no_report);
+    const int written = after_run(options->out, context, !options->no_report);
     for (const std::string& machine : outcome.machines) fmt::print("machine: {}\n", machine);
     fmt::print("{} points of {} runs\n", outcome.points, options->runs.size());
-    context.exit_code = outcome.failed ? exit_points_failed : exit_done;
+    context.exit_code = written != exit_done ? written : outcome.failed ? exit_points_failed : exit_done;
   });
 }
 

@@ -11,6 +11,7 @@
 #include "gpu/device.h"
 #include "run/progress.h"
 #include "run/provenance.h"
+#include "run/scene_check.h"
 #include "run/schedule.h"
 #include "run/supervisor.h"
 
@@ -87,13 +88,16 @@ void run_command(const RunArguments& arguments, Context& context) {
     const auto [index, count] = parse_shard(arguments.shard);
     plan.points = run::shard(plan.points, index, count, costs);
   }
+  for (const std::string& remark :
+       run::check_scenes(plan.points, context.scene_search, run::default_cache_folder()))
+    fmt::print(stderr, "penumbra: {}\n", remark);
   if (arguments.dry_run) return print_plan(plan, costs);
   gpu::require_device(context.device);  // before a folder is made for results that cannot come
   const run::RunOutcome outcome =
       run::run_plan(plan, run_options(arguments, context, plan), context.registry);
-  after_run(outcome.folder, context, !outcome.interrupted && !arguments.no_report);
+  const int written = after_run(outcome.folder, context, !outcome.interrupted && !arguments.no_report);
   fmt::print("{}\n", summary(outcome));
-  context.exit_code = exit_code(outcome);
+  context.exit_code = written != exit_done ? written : exit_code(outcome);
 }
 
 }  // namespace

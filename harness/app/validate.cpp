@@ -6,6 +6,8 @@
 #include "app/commands.h"
 #include "config/plan.h"
 #include "core/error.h"
+#include "run/scene_check.h"
+#include "run/worker.h"
 
 namespace penumbra {
 namespace {
@@ -39,6 +41,9 @@ void add_validate(CLI::App& app, Context& context) {
       try {
         const auto path = context.find_config(config);
         const Plan plan = load_plan(path, options->plan, context.registry, context.scene_search);
+        for (const std::string& remark :
+             run::check_scenes(plan.points, context.scene_search, run::default_cache_folder()))
+          fmt::print(stderr, "penumbra: {}\n", remark);
         fmt::print("{}: ok, {}\n", path.string(), summary(plan));
       } catch (const InputError& e) {
         errors += (errors.empty() ? "" : "\n") + std::string(e.what());

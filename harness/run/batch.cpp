@@ -21,6 +21,11 @@ nlohmann::json scene_json(const Scene& scene, const std::string& name) {
     meshes.push_back({{"name", m.name},
                       {"origin", m.origin},
                       {"closed", m.hygiene.closed()},
+                      {"triangles_in", m.hygiene.triangles_in},
+                      {"dropped_index", m.hygiene.dropped_index},
+                      {"dropped_not_finite", m.hygiene.dropped_not_finite},
+                      {"dropped_degenerate", m.hygiene.dropped_degenerate},
+                      {"duplicate_vertices", m.hygiene.duplicate_vertices},
                       {"open_edges", m.hygiene.open_edges},
                       {"non_manifold_edges", m.hygiene.non_manifold_edges},
                       {"inconsistent_edges", m.hygiene.inconsistent_edges}});

@@ -66,6 +66,9 @@ class Supervisor {
         if (stop_asked) break;
         run_batch(batch);
       }
+    } catch (const WriteError&) {
+      problem = std::current_exception();
+      cannot_write_ = true;
     } catch (...) {
       problem = std::current_exception();
     }
@@ -243,7 +246,7 @@ class Supervisor {
       if (!stop_asked && !after_error) std::filesystem::remove_all(options_.out / ".sequence");
     } catch (const WriteError& e) {
       if (!after_error) throw;
-      say(e.what());
+      if (!cannot_write_) say(e.what());  // or the same full disk would be told twice
     }
     outcome_.interrupted = stop_asked;
     outcome_.folder = options_.out;
@@ -302,7 +305,7 @@ class Supervisor {
   std::map<std::string, std::size_t> index_;
   std::unique_ptr<WorkerProcess> worker_;
   std::string scene_, idle_death_;
-  bool batch_done_ = false;
+  bool batch_done_ = false, cannot_write_ = false;
   RunOutcome outcome_;
 };
 

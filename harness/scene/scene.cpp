@@ -67,6 +67,7 @@ struct Scene::Impl {
   void place_instances();
   void lay_out();
   void write_vertices(const Placed& p, int frame, Geometry& out) const;
+  void check_extent() const;
   void check_lights() const;
   void make_hash(const std::string& text);
 };
@@ -126,6 +127,26 @@ void Scene::Impl::lay_out() {
   first.normals.resize(vertices);
   for (const Placed& p : placed) write_vertices(p, 0, first);
   for (const Vec3f v : first.positions) first.bounds.extend(v);
+  check_extent();
+}
+
+// Products of larger coordinates leave the range of a float, and Embree ends the program at a ray that has
+// them.
+void Scene::Impl::check_extent() const {
+  for (const Placed& p : placed) {
+    const SceneMesh& m = meshes[p.mesh];
+    for (std::size_t v = p.first_vertex; v < p.first_vertex + m.mesh.positions.size(); ++v) {
+      const Vec3f at = first.positions[v];
+      if (std::abs(at.x) <= scene_file::far_away && std::abs(at.y) <= scene_file::far_away &&
+          std::abs(at.z) <= scene_file::far_away)
+        continue;
+      throw InputError(
+          fmt::format("{}: a vertex of the mesh '{}' ({}) lies at ({}, {}, {}) in the world, expected "
+                      "coordinates from {} to {}.",
+                      file.document.name(), m.name, m.origin, at.x, at.y, at.z, -scene_file::far_away,
+                      scene_file::far_away));
+    }
+  }
 }
 
 void Scene::Impl::write_vertices(const Placed& p, int frame, Geometry& out) const {

@@ -10,8 +10,6 @@ using namespace scene_file;
 
 namespace {
 
-constexpr double far_away = 1e9;
-
 template <class List>
 std::vector<std::string> names_of(const List& list) {
   std::vector<std::string> names;

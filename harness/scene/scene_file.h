@@ -65,6 +65,7 @@ SceneFile parse_scene_file(const JsonDocument& document);
 
 // Parts of the parser, one file each.
 namespace scene_file {
+inline constexpr double far_away = 1e9;      // no coordinate of a scene lies beyond
 Vec3d read_point(const JsonNode& node);      // three numbers within +-1e9
 Vec3d read_direction(const JsonNode& node);  // not zero; unit
 Light read_light(const JsonNode& node);

@@ -42,9 +42,9 @@ std::filesystem::path locate(const MeshSource& source, const std::vector<std::fi
 }
 
 Mesh read_or_generate(const MeshSource& source, const std::filesystem::path& path) {
-  if (!path.empty()) return load_mesh(path, source.first_keyframe);
   try {
-    return generate(source.generator, source.arguments);
+    return path.empty() ? generate(source.generator, source.arguments)
+                        : load_mesh(path, source.first_keyframe);
   } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}", source.place, e.what()));
   }

@@ -90,6 +90,17 @@ def file_name(*parts):
     )
 
 
+def write_whole(path, write):
+    """A file whole or not at all: a full disk leaves no torn figure, nor one in place of an older one."""
+    temporary = path.with_name(path.name + ".new")
+    try:
+        write(temporary)
+        temporary.replace(path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
 def save(figure, folder, name):
     paths = []
     for kind, metadata in (
@@ -97,6 +108,6 @@ def save(figure, folder, name):
         ("svg", {"Date": None, "Creator": None}),
     ):
         paths.append(folder / f"{name}.{kind}")
-        figure.savefig(paths[-1], metadata=metadata)
+        write_whole(paths[-1], lambda path: figure.savefig(path, format=kind, metadata=metadata))
     plt.close(figure)
     return paths

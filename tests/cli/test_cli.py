@@ -2,9 +2,12 @@
 import json
 import os
 import pathlib
+import pty
+import signal
 import struct
 import subprocess
 import tempfile
+import time
 import unittest
 import zlib
 
@@ -226,12 +229,105 @@ class Runs(Folder):
         self.refused("run", self.folder / "tiny.json", "--out", out, "--set", "mask_size=4", says=["--set"])
         self.assertFalse(out.exists())
 
+    def test_progress_is_shown_on_a_terminal_alone(self):
+        config = self.write("tiny.json", self.TINY)
+        ours, terminal = pty.openpty()
+        process = subprocess.Popen([PROGRAM, "run", str(config), "--out", str(self.folder / "a"), "--no-report"],
+                                   stdout=subprocess.DEVNULL, stderr=terminal)
+        os.close(terminal)
+        shown = b""
+        try:
+            while piece := os.read(ours, 4096):
+                shown += piece
+        except OSError:  # how the end of a terminal is told
+            pass
+        os.close(ours)
+        self.assertEqual(process.wait(timeout=60), 0, shown)
+        self.assertRegex(shown.decode(), r"\[[#.]{20}\] [0-2]/2  about .+ left  ")
+        self.assertTrue(shown.endswith(b"\x1b[2K"), "the line is wiped at the end")
+        quiet = penumbra("run", config, "--out", self.folder / "b", "--no-report")
+        self.assertEqual((quiet.returncode, quiet.stderr), (0, ""))
+
+    def test_an_interrupt_keeps_what_is_done_and_resume_goes_on(self):
+        config, out = self.write("long.json", dict(self.TINY, mask_size=list(range(1, 41)))), self.folder / "out"
+        process = subprocess.Popen([PROGRAM, "run", str(config), "--out", str(out), "--no-report"], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        journal = out / "points.jsonl"
+        while not journal.exists() or journal.stat().st_size == 0:
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        text, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, errors)
+        self.assertIn("interrupted, --resume goes on", text)
+        kept = json.loads((out / "results.json").read_text(encoding="utf-8"))["points"]
+        self.assertTrue(0 < len(kept) < 40, len(kept))
+        result = penumbra("run", config, "--out", out, "--no-report", "--resume")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"40 ok; {len(kept)} of them kept from before", result.stdout)
+
     def test_no_driver_is_exit_code_3(self):
         nowhere = str(self.folder / "none.json")
         result = penumbra("run", self.write("tiny.json", self.TINY), "--out", self.folder / "out",
                           env={"VK_ICD_FILENAMES": nowhere, "VK_DRIVER_FILES": nowhere})
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertFalse((self.folder / "out").exists())
+
+
+class BadScenes(Folder):
+    """Meshes and lights that cannot be: told before anything runs, with the place in the scene, and no folder is made."""
+
+    def scene(self, mesh, light="[0, 4, 0]", name="scene.json"):
+        return self.write(name, f"""{{ "name": "scene",
+  "meshes": {{ "m": {mesh} }},
+  "instances": [{{"mesh": "m"}}],
+  "lights": [{{"name": "key", "kind": "point", "center": {light}}}],
+  "cameras": [{{"name": "front", "eye": [0, 2, 5], "target": [0, 0, 0]}}] }}""")
+
+    def told(self, scene, *says):
+        config, out = self.write("config.json", dict(Runs.TINY, scene=str(scene))), self.folder / "out"
+        self.refused("run", config, "--out", out, says=["scene.json:", *says])
+        self.refused("validate", config, says=["scene.json:", *says])
+        self.refused("render", scene, "ray_tracing", "resolution=8", "-o", self.folder / "a.png", says=["scene.json:", *says])
+        self.assertEqual(sorted(p.name for p in self.folder.glob("*") if p.suffix in ("", ".png")), [])
+
+    def test_meshes_without_a_triangle_that_is_left(self):
+        point = "v 1 2 3\nv 1 2 3\nv 1 2 3\n"
+        for name, text, says in (
+                ("empty.obj", "", "empty.obj: cannot be read as obj"),
+                ("empty.ply", "", "empty.ply: cannot be read as ply"),
+                ("point.obj", point + "f 1 2 3\n", "1 read, 0 with an index out of range, 0 with a corner that is not finite, 1 without"),
+                ("points.obj", point, "points.obj"),
+                ("nan.obj", "v nan 0 0\nv 1 nan 0\nv 0 0 nan\nf 1 2 3\n", "1 with a corner that is not finite"),
+                ("rubbish.stl", "rubbish" * 30, "rubbish.stl"),
+                ("rubbish.glb", "rubbish" * 30, "rubbish.glb"),
+                ("huge.obj", "v 1e20 0 0\nv 0 1e20 0\nv 0 0 1\nf 1 2 3\n", "expected coordinates from -1000000000")):
+            with self.subTest(name):
+                self.write(name, text)
+                self.told(self.scene(f'{{"file": "{name}"}}'), says)
+
+    def test_the_place_in_the_scene_is_named(self):
+        self.write("empty.obj", "")
+        self.told(self.scene('{"file": "empty.obj"}'), "scene.json:2:20: /meshes/m: ", "empty.obj")
+
+    def test_a_light_inside_geometry(self):
+        self.told(self.scene('{"generator": "box"}', "[0.1, 0.5, 0]"), "/lights/0: ", "'key' lies inside the mesh 'm'")
+
+    def test_every_bad_scene_of_a_sweep_is_told(self):
+        self.write("empty.obj", ""), self.write("nan.obj", "v nan 0 0\nv 1 nan 0\nv 0 0 nan\nf 1 2 3\n")
+        scenes = [str(self.scene(f'{{"file": "{name}.obj"}}', name=f"{name}.json")) for name in ("empty", "nan")]
+        self.refused("validate", self.write("config.json", dict(Runs.TINY, scene=[*scenes, "torus_knot"])),
+                     says=["empty.obj", "nan.obj"])
+
+    def test_single_vertices_that_are_not_finite_are_left_out_and_told(self):
+        self.write("hole.obj", "v nan 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 2 3 4\n")
+        config, out = self.write("config.json", dict(Runs.TINY, scene=str(self.scene('{"file": "hole.obj"}')))), self.folder / "out"
+        result = penumbra("run", config, "--out", out, "--quiet", "--no-report")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 of 2 triangles are left out: 1 with a corner that is not finite", result.stderr)
+        mesh, = json.loads((out / "run.json").read_text(encoding="utf-8"))["scenes"][0]["meshes"]
+        self.assertEqual((mesh["triangles_in"], mesh["dropped_not_finite"], mesh["dropped_index"], mesh["dropped_degenerate"],
+                          mesh["duplicate_vertices"], mesh["open_edges"], mesh["non_manifold_edges"]), (2, 1, 0, 0, 0, 3, 0))
 
 
 class Rendering(Folder):
@@ -295,6 +391,13 @@ class Schemas(Folder):
             path = SOURCE / "configs" / "schema" / f"{name}.schema.json"
             self.assertEqual(path.read_text(encoding="utf-8"), self.accepted("describe", "--schema", name),
                              f"renew it: penumbra describe --schema {name} > {path.relative_to(SOURCE)}")
+
+    def test_every_key_of_a_sweep_is_explained(self):
+        text = (SOURCE / "configs" / "README.md").read_text(encoding="utf-8")
+        properties = self.schema("sweep")["properties"]
+        for key in [*properties, *properties["measure"]["properties"]]:
+            if key != "$schema":
+                self.assertIn(f"`{key}`", text)
 
     def test_schemas_are_draft_7(self):
         for name in self.NAMES:

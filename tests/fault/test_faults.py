@@ -1,4 +1,5 @@
 """Disks that are full, folders that cannot be written, cache entries and results that are damaged."""
+import json
 import os
 import pathlib
 import resource
@@ -44,6 +45,30 @@ class Faults(unittest.TestCase):
                 self.assertIn("cannot be written", result.stderr)
                 self.assertNotIn("internal error", result.stderr)
                 self.ends_well(out)
+
+    # A file system of its own that is too small: ENOSPC from the kernel, also for folders and renames, with the report.
+    def test_a_real_disk_that_is_full_is_exit_code_4_and_loses_nothing(self):
+        apart = ["unshare", "--map-root-user", "--mount"]
+        out, copy = self.base / "disk", self.base / "disk_copy"
+        out.mkdir()
+        if subprocess.run([*apart, "mount", "-t", "tmpfs", "tmpfs", str(out)], capture_output=True, check=False).returncode:
+            self.skipTest("this system lets nobody mount a file system; the limit on a file's size stands in for it")
+        run = f"'{sweep.PROGRAM}' run '{self.config}' --out '{out}' --quiet"
+        for size in ("8k", "24k", "100k", "200k", "320k"):
+            script = (f"mount -t tmpfs -o size={size} tmpfs '{out}' && {run} >&2; echo $?; find '{out}' -name '*.tmp' -o -name '*.new';"
+                      f" cat '{out}/run.json'; mount -o remount,size=64m '{out}' && {run} --resume --no-report >&2;"
+                      f" cp -r '{out}' '{copy}'")
+            with self.subTest(size):
+                result = subprocess.run([*apart, "sh", "-c", script], capture_output=True, text=True, check=False,
+                                        env=self.env, timeout=120)
+                code, _, header = result.stdout.partition("\n")
+                self.assertEqual(code, "4", result.stderr)
+                self.assertIn("No space left on device", result.stderr)
+                self.assertNotIn("internal error", result.stderr)
+                if header:  # no name of an unfinished file stands before it, and it is whole
+                    json.loads(header)
+                self.assertEqual(sweep.outcome(copy), self.calm)
+                shutil.rmtree(copy)
 
     def test_a_folder_that_is_read_only_is_exit_code_4(self):
         out = self.base / "readonly"

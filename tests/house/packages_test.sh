@@ -13,3 +13,7 @@ for script in "$root"/scripts/* "$root"/scripts/*/* "$root/.ci/run"; do
   [ -f "$script" ] || continue
   if head -n 1 "$script" | grep -q bash; then bash -n "$script"; fi
 done
+# A word that setup does not know changes nothing and is refused.
+code=0
+"$root/scripts/setup" nonsense 2>/dev/null || code=$?
+[ "$code" -eq 2 ] || { echo "scripts/setup nonsense: exit code $code, expected 2"; exit 1; }
