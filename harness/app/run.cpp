@@ -88,10 +88,10 @@ void run_command(const RunArguments& arguments, Context& context) {
     const auto [index, count] = parse_shard(arguments.shard);
     plan.points = run::shard(plan.points, index, count, costs);
   }
+  if (arguments.dry_run) return print_plan(plan, costs);
   for (const std::string& remark :
        run::check_scenes(plan.points, context.scene_search, run::default_cache_folder()))
     fmt::print(stderr, "penumbra: {}\n", remark);
-  if (arguments.dry_run) return print_plan(plan, costs);
   gpu::require_device(context.device);  // before a folder is made for results that cannot come
   const run::RunOutcome outcome =
       run::run_plan(plan, run_options(arguments, context, plan), context.registry);
