@@ -25,6 +25,7 @@ void add_validate(CLI::App& app, Context& context) {
   struct Options {
     std::vector<std::string> configs;
     PlanOptions plan;
+    bool no_scenes = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* sub =
@@ -34,6 +35,8 @@ void add_validate(CLI::App& app, Context& context) {
       ->take_all()
       ->allow_extra_args(false);
   sub->add_option("--filter", options->plan.filter, "Only points whose key matches this regular expression");
+  sub->add_flag("--no-scenes", options->no_scenes,
+                "Do not load the scenes; that their meshes are there is checked");
   sub->callback([options, &context] {
     // All are checked before the first error ends the program, so that one call shows every wrong file.
     std::string errors;
@@ -41,9 +44,10 @@ void add_validate(CLI::App& app, Context& context) {
       try {
         const auto path = context.find_config(config);
         const Plan plan = load_plan(path, options->plan, context.registry, context.scene_search);
-        for (const std::string& remark :
-             run::check_scenes(plan.points, context.scene_search, run::default_cache_folder()))
-          fmt::print(stderr, "penumbra: {}\n", remark);
+        if (!options->no_scenes)
+          for (const std::string& remark :
+               run::check_scenes(plan.points, context.scene_search, run::default_cache_folder()))
+            fmt::print(stderr, "penumbra: {}\n", remark);
         fmt::print("{}: ok, {}\n", path.string(), summary(plan));
       } catch (const InputError& e) {
         errors += (errors.empty() ? "" : "\n") + std::string(e.what());

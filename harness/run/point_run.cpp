@@ -106,9 +106,12 @@ void PointRun::prepare() {
   first_frame_ms = frame().frame_ms();
   heartbeat_.stage("read back");
   output_ = read_output();
-  output_.claimed = technique_->evaluated_mask();
-  output_.counters = technique_->counters();
-  passes_.take_times();
+  {
+    CostTimer timer(costs_, "counters");  // a technique may render once more to count what it does
+    output_.claimed = technique_->evaluated_mask();
+    output_.counters = technique_->counters();
+    passes_.take_times();
+  }
   memory_.structure_bytes = technique_->structure_bytes();
   memory_.device_bytes = device.peak_bytes() - std::min(device.peak_bytes(), device_before);
   memory_.host_peak_bytes = host_peak.bytes();

@@ -86,14 +86,20 @@ void RunFile::add_costs(const nlohmann::json& costs) {
     json_["cost_s"][name] = json_["cost_s"].value(name, 0.0) + seconds.get<double>();
 }
 
-// "harness" is what is left of the wall time: neither techniques, references nor pictures.
+// "harness" is what is left of the wall time: neither techniques (with their counters), references nor
+// pictures. An interrupted worker has not told what it spent, which would all be the harness's then: no
+// figure.
 void RunFile::finish(bool complete) {
   const double wall = now_s() - start_;
   nlohmann::json& costs = json_["cost_s"];
   double accounted = 0;
-  for (const char* entry : {"technique", "references", "images"}) accounted += costs.value(entry, 0.0);
+  for (const char* entry : {"technique", "counters", "references", "images"})
+    accounted += costs.value(entry, 0.0);
   costs["wall"] = wall;
-  costs["harness"] = wall - accounted;
+  if (complete)
+    costs["harness"] = wall - accounted;
+  else
+    costs.erase("harness");
   json_["complete"] = complete;
   json_["ended"] = utc_time();
   json_["load_at_end"] = load_average();

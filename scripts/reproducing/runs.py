@@ -128,7 +128,8 @@ def check(run):
     """Has the program check the sweep as it will be run, so that nothing is run when something is wrong."""
     arguments = ["validate" if a == "run" else a for a in run.command()]
     try:
-        result = subprocess.run([PROGRAM, *arguments], cwd=ROOT, capture_output=True, text=True, check=False)
+        # Without the scenes, which each run loads and checks at its own start.
+        result = subprocess.run([PROGRAM, *arguments, "--no-scenes"], cwd=ROOT, capture_output=True, text=True, check=False)
     except OSError as error:
         raise BadInput(f"{PROGRAM}: {error.strerror}; build it with scripts/setup") from None
     if result.returncode != 0:
