@@ -108,6 +108,7 @@ TechniqueInfo ray_tracing_technique() {
   info.lights = {LightKind::point,  LightKind::directional,        LightKind::spot,  LightKind::rectangle,
                  LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
   info.sampled = true;
+  info.rotates = true;
   info.residence = Residence::host;
   info.rebuild_each_frame = [](const ParamValues& values) {
     return ray_tracing_params().read(values).dynamic;
