@@ -55,8 +55,8 @@ compare::KnownNames known_names(const Context& context,
                                 std::initializer_list<const compare::RunResults*> runs) {
   compare::KnownNames known;
   known.scenes = context.scene_names();
-  known.params = {"resolution", "light",         "camera",        "light_size",
-                  "mask_size",  "light_samples", "light_pattern", "seed"};
+  known.params = {"resolution",    "light",         "camera", "light_size",     "mask_size",
+                  "light_samples", "light_pattern", "seed",   "light_rotation", "accumulate"};
   for (const TechniqueInfo& info : context.registry) {
     known.techniques.push_back(info.name);
     for (const ParamInfo& p : info.params) add_unique(known.params, p.name);

@@ -69,9 +69,10 @@ void print_text(const TechniqueInfo& info) {
   fmt::print("{}: {}\n", info.name, info.title);
   fmt::print("Sources: {}\n", fmt::join(info.sources, "; "));
   fmt::print("Lights: {}\n", fmt::join(light_names(info), ", "));
-  fmt::print("{}\n", info.sampled
-                         ? "Sampled: takes mask_size, light_samples and light_pattern, and gives masks."
-                         : "Not sampled: mask_size, light_samples and light_pattern make no copies.");
+  fmt::print("{}\n",
+             info.sampled
+                 ? "Sampled: takes mask_size, light_samples, light_pattern and accumulate, and gives masks."
+                 : "Not sampled: mask_size, light_samples and light_pattern make no copies.");
   fmt::print("Parameters:{}\n", info.params.empty() ? " none" : "");
   for (const ParamInfo& p : info.params) print_param(p);
   if (info.choosing.empty()) return;

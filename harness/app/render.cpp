@@ -22,8 +22,9 @@ struct RenderArguments {
   std::vector<std::string> values;
 };
 
-const std::vector<std::string> axes = {"resolution", "mask_size", "light_samples", "light_pattern",
-                                       "light_size", "light",     "camera"};
+const std::vector<std::string> axes = {"resolution",    "mask_size",      "light_samples",
+                                       "light_pattern", "light_size",     "light",
+                                       "camera",        "light_rotation", "accumulate"};
 
 // 512x256 is [512, 256]; what is JSON is taken as such, the rest as a word.
 json value_of(const std::string& text) {

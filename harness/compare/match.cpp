@@ -12,8 +12,8 @@ namespace {
 using nlohmann::json;
 
 // Parameters that are not a technique's own.
-constexpr std::array shared = {"resolution", "light",         "camera",        "light_size",
-                               "mask_size",  "light_samples", "light_pattern", "seed"};
+constexpr std::array shared = {"resolution",    "light",         "camera", "light_size",     "mask_size",
+                               "light_samples", "light_pattern", "seed",   "light_rotation", "accumulate"};
 
 std::string group_of(const json& point) {
   return point.at("technique").get<std::string>() + '\n' + point.at("scene").get<std::string>() + '\n' +
@@ -25,7 +25,9 @@ bool agree(const json& a, const json& b) {
     if (b.at("params").contains(name) && b.at("params").at(name) != value) return false;
   // How many light samples there are is said in one of two ways.
   const auto has = [](const json& p, const char* name) { return p.at("params").contains(name); };
-  return has(a, "mask_size") == has(b, "mask_size") && has(a, "light_samples") == has(b, "light_samples");
+  // Rotation and accumulation are named only where there is one.
+  return std::ranges::all_of(std::array{"mask_size", "light_samples", "light_rotation", "accumulate"},
+                             [&](const char* name) { return has(a, name) == has(b, name); });
 }
 
 // The points of the other side that agree with each; only pairs that are each other's only choice count.

@@ -185,7 +185,7 @@ json essential(const json& record) {
     if (record.contains(key)) out[key] = record.at(key);
   if (record.at("status") != "ok") return out;
   out["timing"] = stats_only(record.value("timing", json()));
-  for (const char* group : {"memory", "metrics", "metrics_matched"})
+  for (const char* group : {"memory", "metrics", "metrics_own", "metrics_matched"})
     if (record.contains(group)) out[group] = record.at(group);
   json counters = json::object();
   if (const auto all = record.find("counters"); all != record.end() && all->is_object())

@@ -16,6 +16,8 @@ struct SceneAxes {
   std::vector<SampleCount> samples;
   std::vector<LightPattern> patterns;
   std::vector<double> light_sizes;
+  std::vector<LightRotation> rotations;
+  std::vector<int> accumulations;
 };
 
 // An entry in one scene: its own lights and cameras, or the sweep's.
@@ -95,7 +97,9 @@ SceneAxes scene_axes(const Sweep& sweep, const SceneDeclaration& scene) {
       values_or_default(sweep.resolutions, scene, "resolution", read_resolution, Extent{512, 512}),
       sample_counts(sweep, scene),
       values_or_default(sweep.patterns, scene, "light_pattern", read_light_pattern, LightPattern::regular),
-      values_or_default(sweep.light_sizes, scene, "light_size", read_light_size, -1.0)};
+      values_or_default(sweep.light_sizes, scene, "light_size", read_light_size, -1.0),
+      sweep.rotations.empty() ? std::vector{LightRotation::none} : sweep.rotations,
+      sweep.accumulations.empty() ? std::vector{1} : sweep.accumulations};
 }
 
 // Every combination of an entry's parameters: its own values, then the sweep's axes, the scene's defaults,
@@ -142,6 +146,8 @@ void drop_idle_axes(Point& point, const Light& light) {
   point.light_samples.width = point.light_samples.height = 1;
   point.light_samples.count = 0;
   point.light_samples.pattern = LightPattern::regular;
+  point.light_samples.rotation = LightRotation::none;
+  point.accumulate = 1;
 }
 
 class Expansion {
@@ -212,9 +218,18 @@ class Expansion {
           for (const LightPattern pattern : axes.patterns) {
             p.light = light->name, p.light_size = size;
             p.light_samples = {samples.width, samples.height, samples.count, pattern, sweep_.seed};
-            for (const EntryAxes& e : entries)
-              if (contains(e.cameras, p.camera) && contains(e.lights, light)) expand_entry(p, *light, e);
+            expand_rotation(p, *light, axes, entries);
           }
+  }
+
+  void expand_rotation(Point p, const Light& light, const SceneAxes& axes,
+                       const std::vector<EntryAxes>& entries) {
+    for (const LightRotation rotation : axes.rotations)
+      for (const int accumulate : axes.accumulations) {
+        p.light_samples.rotation = rotation, p.accumulate = accumulate;
+        for (const EntryAxes& e : entries)
+          if (contains(e.cameras, p.camera) && contains(e.lights, &light)) expand_entry(p, light, e);
+      }
   }
 
   void expand_entry(const Point& like, const Light& light, const EntryAxes& e) {
@@ -240,8 +255,8 @@ class Expansion {
       count += static_cast<double>(e.params.size()) * static_cast<double>(e.lights.size()) *
                static_cast<double>(e.cameras.size());
     count *= sweep_.frames;
-    for (const std::size_t n :
-         {axes.resolutions.size(), axes.samples.size(), axes.patterns.size(), axes.light_sizes.size()})
+    for (const std::size_t n : {axes.resolutions.size(), axes.samples.size(), axes.patterns.size(),
+                                axes.light_sizes.size(), axes.rotations.size(), axes.accumulations.size()})
       count *= static_cast<double>(n);
     bound_ += count;
     if (bound_ > static_cast<double>(limits::points))

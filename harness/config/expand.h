@@ -12,8 +12,8 @@ namespace penumbra {
 using DeclareScene = std::function<SceneDeclaration(const std::string& name)>;
 
 // All points of the sweep in their fixed order: scene, camera, resolution, frame, light, light_size, light
-// samples, light pattern, technique entry, parameters. Points that come out twice are there once. Throws
-// InputError for scenes, lights and cameras that do not exist.
+// samples, light pattern, rotation, accumulation, technique entry, parameters. Points that come out twice are
+// there once. Throws InputError for scenes, lights and cameras that do not exist.
 std::vector<Point> expand(const Sweep& sweep, const DeclareScene& declare);
 
 // Points whose key matches. Throws InputError for a bad expression or when none is left.

@@ -75,6 +75,9 @@ json expanded(const Sweep& sweep) {
       out["mask_size"].push_back(extent_to_json(s.width, s.height));
   for (const LightPattern p : sweep.patterns)
     out["light_pattern"].push_back(light_pattern_names()[static_cast<std::size_t>(p)]);
+  for (const LightRotation r : sweep.rotations)
+    out["light_rotation"].push_back(light_rotation_names()[static_cast<std::size_t>(r)]);
+  for (const int n : sweep.accumulations) out["accumulate"].push_back(n);
   for (const double size : sweep.light_sizes) out["light_size"].push_back(size);
   out.update(params_to_json(sweep.axes));
   for (const SweepEntry& entry : sweep.entries) {
@@ -114,6 +117,9 @@ std::string Point::key() const {
                ? fmt::format(",light_samples={}", light_samples.count)
                : fmt::format(",mask_size={}", extent_text(light_samples.width, light_samples.height));
     out += ",light_pattern=" + light_pattern_names()[static_cast<std::size_t>(light_samples.pattern)];
+    if (light_samples.rotation != LightRotation::none)
+      out += ",light_rotation=" + light_rotation_names()[static_cast<std::size_t>(light_samples.rotation)];
+    if (accumulate > 1) out += fmt::format(",accumulate={}", accumulate);
   }
   for (const auto& [name, value] : params) out += fmt::format(",{}={}", name, to_text(value));
   return out + fmt::format(",frame={}", frame);

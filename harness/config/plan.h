@@ -31,6 +31,7 @@ struct Point {
   int width = 512, height = 512;
   LightSampleRequest light_samples;  // count 1 x 1 for techniques that are not sampled
   bool sampled = false;
+  int accumulate = 1;      // frames, each with another set of light samples, whose mean is the result
   double light_size = -1;  // < 0: the scene's own
   int frame = 0;
   uint32_t seed = 1;

@@ -106,6 +106,10 @@ json axes(const Registry& registry) {
       {"light_samples",
        axis(integer(1, limits::light_samples), "Light samples, any number, in place of mask_size.")},
       {"light_pattern", axis(choice(light_pattern_names()), "How light samples are placed.")},
+      {"light_rotation",
+       axis(choice(light_rotation_names()), "Whether each pixel moves the light samples in its own way.")},
+      {"accumulate", axis(integer(1, limits::accumulate),
+                          "Frames, each with another set of light samples, whose mean is the result.")},
       {"light_size", axis(number(0, limits::light_size),
                           "Rectangle: diagonal, sphere: diameter, in scene units; 0 makes a point light.")}};
   for (const std::string& axis_name : param_axis_names(registry))

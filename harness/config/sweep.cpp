@@ -128,10 +128,10 @@ std::string read_run_name(const JsonNode& node) {
 }
 
 std::vector<std::string> known_keys(const Registry& registry) {
-  std::vector<std::string> keys = {"$schema",   "name",          "description",   "scene",      "resolution",
-                                   "mask_size", "light_samples", "light",         "light_size", "techniques",
-                                   "reference", "images",        "light_pattern", "camera",     "measure",
-                                   "frames",    "seed"};
+  std::vector<std::string> keys = {"$schema",   "name",          "description",    "scene",      "resolution",
+                                   "mask_size", "light_samples", "light",          "light_size", "techniques",
+                                   "reference", "images",        "light_pattern",  "camera",     "measure",
+                                   "frames",    "seed",          "light_rotation", "accumulate"};
   for (const std::string& axis : param_axis_names(registry)) keys.push_back(axis);
   return keys;
 }
@@ -147,6 +147,11 @@ const std::vector<std::string>& image_names() {
 const std::vector<std::string>& light_pattern_names() {
   static const std::vector<std::string> names{"regular", "jittered",
                                               "halton"};  // in the order of LightPattern
+  return names;
+}
+
+const std::vector<std::string>& light_rotation_names() {
+  static const std::vector<std::string> names{"none", "per_pixel"};  // in the order of LightRotation
   return names;
 }
 
@@ -179,6 +184,12 @@ LightPattern read_light_pattern(const JsonNode& node) {
   const std::vector<std::string>& names = light_pattern_names();
   return static_cast<LightPattern>(std::ranges::find(names, node.choice(names, "a light pattern")) -
                                    names.begin());
+}
+
+static LightRotation read_light_rotation(const JsonNode& node) {
+  const std::vector<std::string>& names = light_rotation_names();
+  return static_cast<LightRotation>(
+      std::ranges::find(names, node.choice(names, "a rotation of the light samples")) - names.begin());
 }
 
 double read_light_size(const JsonNode& node) { return node.number(0, limits::light_size); }
@@ -222,6 +233,9 @@ Sweep parse_sweep(const JsonDocument& document, const Registry& registry, const 
   read_axis(root, "mask_size", sweep.samples, read_mask_size);
   read_axis(root, "light_samples", sweep.samples, read_light_samples);
   read_axis(root, "light_pattern", sweep.patterns, read_light_pattern);
+  read_axis(root, "light_rotation", sweep.rotations, read_light_rotation);
+  read_axis(root, "accumulate", sweep.accumulations,
+            [](const JsonNode& n) { return static_cast<int>(n.integer(1, limits::accumulate)); });
   read_axis(root, "light_size", sweep.light_sizes, read_light_size);
   const JsonNode techniques = root.require("techniques", "a sweep config");
   sweep.entries = read_list(techniques, [&](const JsonNode& n) { return read_entry(n, registry); });

@@ -43,6 +43,8 @@ struct Sweep {
   std::vector<Extent> resolutions;
   std::vector<SampleCount> samples;
   std::vector<LightPattern> patterns;
+  std::vector<LightRotation> rotations;  // empty: none
+  std::vector<int> accumulations;        // empty: 1
   std::vector<double> light_sizes;
   ParamAxes axes;  // grid_size and other parameters that are top-level axes too
   std::vector<SweepEntry> entries;
@@ -72,12 +74,14 @@ inline constexpr int mask_side = 256;
 inline constexpr int light_samples = 65536;
 inline constexpr double light_size = 1e9;
 inline constexpr int reference_samples = 1 << 20;
+inline constexpr int accumulate = 1024;
 inline constexpr int frames = 100000;
 inline constexpr int grid_size = 65536;
 inline constexpr int64_t points = 1000000;
 }  // namespace limits
 const std::vector<std::string>& image_names();
 const std::vector<std::string>& light_pattern_names();
+const std::vector<std::string>& light_rotation_names();
 // Names of parameters that are top-level axes too: grid_size, and what the registry marks.
 std::vector<std::string> param_axis_names(const Registry& registry);
 

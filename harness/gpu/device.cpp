@@ -163,6 +163,15 @@ void Device::Impl::query_caps() {
   }
 }
 
+// Of the environment's PENUMBRA_DEVICE_MEMORY_MIB, in bytes.
+static uint64_t mebibytes(const std::string& text) {
+  if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos ||
+      std::stoull(text) == 0)
+    throw DeviceError(
+        fmt::format("PENUMBRA_DEVICE_MEMORY_MIB: found '{}', expected a number of MiB from 1 on.", text));
+  return std::stoull(text) << 20;
+}
+
 Device::Device(const DeviceOptions& options) {
   const char* env = std::getenv("PENUMBRA_VALIDATION");
   impl_ = std::make_unique<Impl>(options.validation || (env && std::strcmp(env, "1") == 0));
@@ -173,6 +182,7 @@ Device::Device(const DeviceOptions& options) {
   impl_->create_device();
   impl_->query_caps();
   impl_->clock = probe_clock(*this);
+  if (const char* most = std::getenv("PENUMBRA_DEVICE_MEMORY_MIB")) impl_->limit = mebibytes(most);
 }
 
 Device::~Device() = default;

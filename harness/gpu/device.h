@@ -58,7 +58,8 @@ class Device {
   uint64_t allocated_bytes() const;
   uint64_t peak_bytes() const;
   void reset_peak();
-  // An upper bound on allocated_bytes(); going over it throws PointError as a full device would. 0 = none.
+  // An upper bound on allocated_bytes(); going over it throws PointError as a full device would. 0 = none. At
+  // first what PENUMBRA_DEVICE_MEMORY_MIB says, if that is set.
   void set_memory_limit(uint64_t bytes);
 
   // Validation messages so far (warnings and errors), in order; empty when validation is off.

@@ -81,12 +81,13 @@ void hash_light(Hasher& hash, const Light& light) {
 }  // namespace
 
 std::string converged_key(const std::string& geometry_hash, const ViewSamplesHost& view, const Light& light,
-                          int n, uint32_t seed, ReferenceOrigin origin) {
+                          int n, uint32_t seed, ReferenceOrigin origin, SphereAs sphere) {
   Hasher hash;
   hash.text("converged reference").value(version).text(geometry_hash).value(view.width).value(view.height);
   hash.array(view.triangle).array(view.position).array(view.origin).array(view.geometric_normal);
   hash_light(hash, light);
   hash.value(n).value(seed).value(static_cast<uint32_t>(origin));
+  if (light.kind == LightKind::sphere && sphere == SphereAs::disc) hash.text("disc");
   return hash.hex();
 }
 

@@ -11,7 +11,7 @@ namespace penumbra {
 // Everything that a converged reference depends on, as 32 hexadecimal digits. `geometry_hash`: hash of the
 // triangles.
 std::string converged_key(const std::string& geometry_hash, const ViewSamplesHost& view, const Light& light,
-                          int n, uint32_t seed, ReferenceOrigin origin);
+                          int n, uint32_t seed, ReferenceOrigin origin, SphereAs sphere = SphereAs::ball);
 
 std::filesystem::path cache_entry(const std::filesystem::path& cache_dir, const std::string& key);
 

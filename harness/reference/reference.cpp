@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <numeric>
 
 #include "core/error.h"
@@ -83,6 +84,37 @@ std::vector<LightSamples> make_batches(const Light& light, int n, uint32_t seed)
   return sets;
 }
 
+// Batches of points of the unit disc, (x, y, 0): what each view sample then turns towards itself.
+std::vector<LightSamples> make_disc_batches(int n, uint32_t seed) {
+  Light square;
+  square.kind = LightKind::rectangle;
+  square.center = {0.5F, 0.5F, 0};
+  square.edge_u = {1, 0, 0}, square.edge_v = {0, 1, 0};
+  std::vector<LightSamples> sets = make_batches(square, n, seed);
+  for (LightSamples& set : sets) {
+    for (Vec4f& p : set.points) {
+      const double radius = std::sqrt(static_cast<double>(p.x)),
+                   angle = 2 * std::numbers::pi * static_cast<double>(p.y);
+      p = {static_cast<float>(radius * std::cos(angle)), static_cast<float>(radius * std::sin(angle)), 0, 1};
+    }
+    sort_along_curve(set);
+  }
+  return sets;
+}
+
+// The disc through the sphere's centre across the direction to `position`.
+void face(const Light& sphere, Vec3f position, const LightSamples& unit_disc, std::vector<Vec4f>& points) {
+  const Vec3d axis = normalize(Vec3d(position) - Vec3d(sphere.center));
+  const Vec3d other = std::abs(axis.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  const Vec3d u = normalize(cross(axis, other)), v = cross(axis, u);
+  const Vec3f ru(u * static_cast<double>(sphere.radius)), rv(v * static_cast<double>(sphere.radius));
+  points.resize(unit_disc.points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3f p = sphere.center + (ru * unit_disc.points[i].x + rv * unit_disc.points[i].y);
+    points[i] = {p.x, p.y, p.z, 1};
+  }
+}
+
 // Mean and standard error of the mean of the batches' estimates.
 void summarise(std::span<const float> estimates, float& mean, float& standard_error) {
   const double n = static_cast<double>(estimates.size());
@@ -157,10 +189,12 @@ MatchedReference ReferenceScene::matched(const ViewSamplesHost& view, const Ligh
   const ShadowSegments segments(impl_->scene, light, samples, origin);
   parallel_for(pixels, grain, [&](std::size_t begin, std::size_t end) {
     const embree::FlushDenormals flush;
+    std::vector<Vec4f> storage;
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       if (view.triangle[pixel] == no_triangle) continue;
       const std::span<uint32_t> mask(&result.mask[pixel * words], words);
-      result.evaluated[pixel] = segments.blocked(view_sample(view, pixel, origin), mask);
+      result.evaluated[pixel] =
+          segments.blocked(view_sample(view, pixel, origin), samples.of_pixel(pixel, storage), mask);
       if (result.evaluated[pixel]) result.visibility[pixel] = segments.visibility(mask);
     }
   });
@@ -168,7 +202,8 @@ MatchedReference ReferenceScene::matched(const ViewSamplesHost& view, const Ligh
 }
 
 static ReferenceScene::Converged converge(RTCScene scene, const ViewSamplesHost& view, const Light& light,
-                                          const std::vector<LightSamples>& batches, ReferenceOrigin origin) {
+                                          const std::vector<LightSamples>& batches, ReferenceOrigin origin,
+                                          bool facing) {
   const std::size_t pixels = view.pixel_count();
   ReferenceScene::Converged result;
   result.visibility.assign(pixels, 1.0F);
@@ -184,12 +219,15 @@ static ReferenceScene::Converged converge(RTCScene scene, const ViewSamplesHost&
     const embree::FlushDenormals flush;
     std::vector<uint32_t> mask(words);
     std::vector<float> estimates(batches.size());
+    std::vector<Vec4f> faced;
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       if (view.triangle[pixel] == no_triangle) continue;
       bool evaluated = false;
       for (std::size_t b = 0; b < segments.size(); ++b) {
         const std::span<uint32_t> bits(mask.data(), static_cast<std::size_t>(batches[b].mask_words()));
-        evaluated |= segments[b].blocked(view_sample(view, pixel, origin), bits);
+        if (facing) face(light, view.position[pixel].xyz(), batches[b], faced);
+        const std::span<const Vec4f> points = facing ? faced : batches[b].points;
+        evaluated |= segments[b].blocked(view_sample(view, pixel, origin), points, bits);
         estimates[b] = segments[b].visibility(bits);
       }
       result.evaluated[pixel] = evaluated;
@@ -201,16 +239,20 @@ static ReferenceScene::Converged converge(RTCScene scene, const ViewSamplesHost&
 
 ReferenceScene::Converged ReferenceScene::converged(const ViewSamplesHost& view, const Light& light, int n,
                                                     uint32_t seed, ReferenceOrigin origin,
-                                                    const std::filesystem::path& cache_dir) const {
+                                                    const std::filesystem::path& cache_dir,
+                                                    SphereAs sphere) const {
+  const bool facing = sphere == SphereAs::disc && light.kind == LightKind::sphere && light.radius > 0;
   std::filesystem::path entry;
   if (!cache_dir.empty()) {
-    entry = cache_entry(cache_dir, converged_key(impl_->geometry_hash, view, light, n, seed, origin));
+    entry = cache_entry(cache_dir, converged_key(impl_->geometry_hash, view, light, n, seed, origin, sphere));
     if (auto cached = read_cached(entry, view.width, view.height)) {
       cached->mean_standard_error = root_mean_square(cached->standard_error, cached->evaluated);
       return *std::move(cached);
     }
   }
-  Converged result = converge(impl_->scene, view, light, make_batches(light, n, seed), origin);
+  Converged result =
+      converge(impl_->scene, view, light, facing ? make_disc_batches(n, seed) : make_batches(light, n, seed),
+               origin, facing);
   result.mean_standard_error = root_mean_square(result.standard_error, result.evaluated);
   if (!entry.empty())
     if (const std::string reason = write_cached(entry, view.width, view.height, result); !reason.empty())

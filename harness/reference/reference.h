@@ -14,8 +14,12 @@ namespace penumbra {
 // Segments start at P' (offset), or at P with the triangle of the view sample left out (exact).
 enum class ReferenceOrigin { offset, exact };
 
-// Visibility at exactly the given light samples. Pixels without a view sample, or with no light sample above
-// their horizon, are not evaluated and hold 1.
+// What a sphere is sampled as: its volume, or the disc through its centre that faces each view sample, as
+// techniques take it that project the light.
+enum class SphereAs { ball, disc };
+
+// Visibility at exactly the given light samples, as each pixel takes them. Pixels without a view sample, or
+// with no light sample above their horizon, are not evaluated and hold 1.
 struct MatchedReference {
   std::vector<float> visibility;
   std::vector<uint32_t> mask;  // mask_words per pixel, 1 = blocked (below the horizon counts as blocked)
@@ -44,7 +48,8 @@ class ReferenceScene {
   // cache; else an entry named by the hash of geometry, view samples, light, n, seed and origin is read if
   // whole and valid (checksum), otherwise made and written (failure to write is a message, not an error).
   Converged converged(const ViewSamplesHost& view, const Light& light, int n, uint32_t seed,
-                      ReferenceOrigin origin, const std::filesystem::path& cache_dir) const;
+                      ReferenceOrigin origin, const std::filesystem::path& cache_dir,
+                      SphereAs sphere = SphereAs::ball) const;
 
  private:
   struct Impl;

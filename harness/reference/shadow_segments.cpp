@@ -37,34 +37,36 @@ bool ShadowSegments::lights(Vec3f position, const Vec4f& light_point) const {
   return true;
 }
 
-bool ShadowSegments::blocked(const ReferenceViewSample& view, std::span<uint32_t> mask) const {
+bool ShadowSegments::blocked(const ReferenceViewSample& view, std::span<const Vec4f> points,
+                             std::span<uint32_t> mask) const {
   std::ranges::fill(mask, 0U);
   bool any_above_horizon = false;
-  const std::size_t count = samples_.points.size();
+  const std::size_t count = points.size();
   for (std::size_t first = 0; first < count; first += packet) {
     const std::size_t lanes = std::min(packet, count - first);
     uint32_t wanted = 0;
     for (std::size_t i = 0; i < lanes; ++i) {
-      const Vec4f& l = samples_.points[first + i];
+      const Vec4f& l = points[first + i];
       const Vec3f to_light = l.w != 0 ? l.xyz() - view.position : l.xyz();
       const bool above = dot(view.geometric_normal, to_light) > 0;
       any_above_horizon = any_above_horizon || above;
       if (above && lights(view.position, l)) wanted |= 1U << i;
     }
     const uint32_t all = (1U << lanes) - 1;
-    const uint32_t bits = (all & ~wanted) | (wanted ? trace(view, first, wanted) : 0);
+    const uint32_t bits = (all & ~wanted) | (wanted ? trace(view, points, first, wanted) : 0);
     mask[first / 32] |= bits << (first % 32);
   }
   return any_above_horizon;
 }
 
-uint32_t ShadowSegments::trace(const ReferenceViewSample& view, std::size_t first, uint32_t wanted) const {
+uint32_t ShadowSegments::trace(const ReferenceViewSample& view, std::span<const Vec4f> points,
+                               std::size_t first, uint32_t wanted) const {
   alignas(64) RTCRay16 rays;
   alignas(64) int valid[packet];
   const Vec3f o = view.segment_origin;
   for (std::size_t i = 0; i < packet; ++i) {
     valid[i] = wanted >> i & 1 ? -1 : 0;
-    const Vec4f& l = samples_.points[std::min(first + i, samples_.points.size() - 1)];
+    const Vec4f& l = points[std::min(first + i, points.size() - 1)];
     const Vec3f along = l.w != 0 ? l.xyz() - o : l.xyz();
     rays.org_x[i] = o.x, rays.org_y[i] = o.y, rays.org_z[i] = o.z;
     rays.dir_x[i] = along.x, rays.dir_y[i] = along.y, rays.dir_z[i] = along.z;

@@ -22,18 +22,21 @@ class ShadowSegments {
   // `light` and `samples` must outlive it.
   ShadowSegments(RTCScene scene, const Light& light, const LightSamples& samples, ReferenceOrigin origin);
 
-  // Writes the mask (mask_words() words, 1 = blocked, bits past the count 0). A light sample is blocked when
+  // `points`: the light samples as this view sample's pixel takes them (LightSamples::of_pixel). Writes the
+  // mask (mask_words() words, 1 = blocked, bits past the count 0). A light sample is blocked when
   // it lies on or below the plane through P across Ng, when it belongs to a rectangle whose front does not
   // face P, when P is outside a spot light's cone, or when the open segment meets a triangle. Returns whether
   // any light sample is above the horizon: if none is, the view sample is not evaluated.
-  bool blocked(const ReferenceViewSample& view, std::span<uint32_t> mask) const;
+  bool blocked(const ReferenceViewSample& view, std::span<const Vec4f> points,
+               std::span<uint32_t> mask) const;
 
   // Weighted fraction of the light samples whose bit is 0.
   float visibility(std::span<const uint32_t> mask) const;
 
  private:
   bool lights(Vec3f position, const Vec4f& light_point) const;
-  uint32_t trace(const ReferenceViewSample& view, std::size_t first, uint32_t wanted) const;
+  uint32_t trace(const ReferenceViewSample& view, std::span<const Vec4f> points, std::size_t first,
+                 uint32_t wanted) const;
 
   RTCScene scene_;
   const Light& light_;

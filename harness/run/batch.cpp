@@ -185,25 +185,35 @@ void BatchRunner::judge(Prepared& prepared) {
   PointRun& run = *prepared.run;
   const Point& point = run.point();
   const ViewSamplesHost& view = view_->samples().host();
-  heartbeat_.stage("reference");
-  const MatchedReference& matched = view_->matched(run.lit(), point, run.origin());
+  // Each frame of an accumulation is held against its own truth at once: none of their masks need stay.
+  Accumulation frames;
+  for (int set = 0; set < point.accumulate; ++set) {
+    if (set > 0) run.take_set(set);
+    heartbeat_.stage("reference");
+    const MatchedReference& matched = view_->matched(run.lit(), point, run.origin(), set);
+    CostTimer timer(costs_, "judge");
+    frames.add(run.output(), matched, run.light_samples(), point.width);
+    if (set == 0) run.seal_output(frames.evaluated());
+  }
+  const std::vector<float> matched_truth = frames.truth();
   const ReferenceScene::Converged* converged = nullptr;
   if (settings_.reference_samples > 0)
     converged = &view_->converged(run.lit(), point, run.origin(), settings_.reference_samples,
                                   settings_.reference_cache);
   heartbeat_.stage("metrics");
   Output& output = run.output();
-  const auto evaluated = evaluated_pixels(matched, output.claimed);
+  frames.take_mean(output);
+  const std::vector<uint8_t>& evaluated = frames.evaluated();
   nlohmann::json& record = prepared.record;
   {
     CostTimer timer(costs_, "judge");
-    finish_output(output, evaluated, point.width);
-    record["metrics_matched"] = matched_metrics(output, matched, view_->light_samples(run.lit(), point),
+    record["metrics_matched"] = matched_metrics(output, matched_truth, frames.light_samples(), frames.bits(),
                                                 evaluated, point.width, point.height);
     record["metrics"] = converged ? converged_metrics(output, *converged, evaluated, view, run.lit().current)
                                   : nlohmann::json();
   }
-  const std::span<const float> truth = converged ? converged->visibility : matched.visibility;
+  judge_own_truth(prepared, evaluated);
+  const std::span<const float> truth = converged ? converged->visibility : matched_truth;
   if (settings_.frames > 1 && converged)
     add_flicker(record["metrics"], run, signed_error(output.visibility, truth, evaluated));
   record["counters"] = counters_json(output.counters);
@@ -225,7 +235,22 @@ void BatchRunner::judge(Prepared& prepared) {
   record["images"] = settings_.run_folder.empty()
                          ? nlohmann::json::object()
                          : pictures_.write(run, output, evaluated, truth, truth_name, view, view_key_);
-  run.seal_output(evaluated);
+  run.drop_output();
+}
+
+// Against the light as the technique says it takes it, where that is another one.
+void BatchRunner::judge_own_truth(Prepared& prepared, std::span<const uint8_t> evaluated) {
+  PointRun& run = *prepared.run;
+  const Light& light = run.lit().current.light;
+  if (!run.info().sphere_as_disc || light.kind != LightKind::sphere || settings_.reference_samples == 0)
+    return;
+  heartbeat_.stage("reference");
+  const auto& own = view_->converged(run.lit(), run.point(), run.origin(), settings_.reference_samples,
+                                     settings_.reference_cache, SphereAs::disc);
+  heartbeat_.stage("metrics");
+  CostTimer timer(costs_, "judge");
+  prepared.record["metrics_own"] =
+      converged_metrics(run.output(), own, evaluated, view_->samples().host(), run.lit().current);
 }
 
 // The error of each frame is kept beside the results until the sequence is finished: the next frame may be

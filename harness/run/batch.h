@@ -38,6 +38,7 @@ class BatchRunner {
   std::optional<Prepared> prepare(const Point& point);
   std::optional<Prepared> try_prepare(const Point& point);
   void judge(Prepared& prepared);
+  void judge_own_truth(Prepared& prepared, std::span<const uint8_t> evaluated);
   void add_flicker(nlohmann::json& metrics, PointRun& run, std::span<const float> error);
   void finish_group();
   void fail(const Point& point, const std::string& message, const Heartbeat::State& at);

@@ -75,6 +75,7 @@ Row row_of(const json& point) {
   for (const auto& [name, stat] : passes.items()) row["pass." + name + "_ms"] = text_of(stat.at("median"));
   add_scalars(row, "memory", point.value("memory", json()));
   add_scalars(row, "metrics", point.value("metrics", json()));
+  add_scalars(row, "metrics_own", point.value("metrics_own", json()));
   add_scalars(row, "metrics_matched", point.value("metrics_matched", json()));
   add_scalars(row, "counters", point.value("counters", json()));
   return row;

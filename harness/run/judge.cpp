@@ -39,14 +39,16 @@ std::vector<float> with_reference_elsewhere(std::span<const float> visibility,
 
 }  // namespace
 
-std::vector<Vec3f> shade(const ViewSamplesHost& view, const Frame& frame, std::span<const float> visibility) {
+std::vector<Vec3f> shade(const ViewSamplesHost& view, const Frame& frame, std::span<const float> visibility,
+                         std::span<const float> cosines) {
   std::vector<Vec3f> picture(view.pixel_count());
   const Geometry& g = frame.geometry;
   parallel_for(picture.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (view.triangle[i] == no_triangle) continue;
       const Vec3f l = towards_light(frame.light, view.position[i].xyz());
-      const float lambert = std::max(0.0f, dot(view.shading_normal[i].xyz(), l));
+      const float lambert =
+          cosines.empty() ? std::max(0.0f, dot(view.shading_normal[i].xyz(), l)) : cosines[i];
       picture[i] = g.instance_albedo[g.triangle_instance[view.triangle[i]]] * (lambert * visibility[i]);
     }
   });
@@ -74,19 +76,20 @@ void finish_output(Output& output, std::span<const uint8_t> evaluated, int width
   }
 }
 
-nlohmann::json matched_metrics(const Output& output, const MatchedReference& matched,
-                               const LightSamples& samples, std::span<const uint8_t> evaluated, int width,
-                               int height) {
-  const ImageErrors e = image_errors({width, height, matched.visibility, evaluated},
-                                     {width, height, output.visibility, evaluated});
+nlohmann::json matched_metrics(const Output& output, std::span<const float> truth, int light_samples,
+                               const std::optional<MaskMismatch>& bits, std::span<const uint8_t> evaluated,
+                               int width, int height) {
+  const std::vector<float> reference(truth.begin(), truth.end());
+  const std::vector<uint8_t> counted(evaluated.begin(), evaluated.end());
+  const ImageErrors e =
+      image_errors({width, height, reference, counted}, {width, height, output.visibility, counted});
   std::size_t pixels = 0, off = 0;
   for (std::size_t i = 0; i < evaluated.size(); ++i) {
     if (!evaluated[i]) continue;
     ++pixels;
     // Half of the smallest step that one sample makes tells a different mask from a different rounding of its
     // sum.
-    off +=
-        std::abs(output.visibility[i] - matched.visibility[i]) > 0.5f / static_cast<float>(samples.count());
+    off += std::abs(output.visibility[i] - truth[i]) > 0.5f / static_cast<float>(light_samples);
   }
   nlohmann::json j = {
       {"mae", or_null(e.mae)},
@@ -94,13 +97,44 @@ nlohmann::json matched_metrics(const Output& output, const MatchedReference& mat
       {"evaluated_pixels", pixels},
       {"pixels_off", pixels ? nlohmann::json(double(off) / double(pixels)) : nlohmann::json()},
       {"mask_bit_mismatch", nullptr}};
-  if (output.mask.empty()) return j;
+  if (!bits) return j;
+  j["mask_bit_mismatch"] = bits->bits ? nlohmann::json(bits->mask_bit_mismatch()) : nlohmann::json();
+  j["mask_bits_off"] = bits->bits_off;
+  j["pixels_off"] =
+      bits->pixels ? nlohmann::json(double(bits->pixels_off) / double(bits->pixels)) : nlohmann::json();
+  return j;
+}
+
+void Accumulation::add(Output& output, const MatchedReference& matched, const LightSamples& samples,
+                       int width) {
+  const std::vector<uint8_t> evaluated = evaluated_pixels(matched, output.claimed);
+  finish_output(output, evaluated, width);
+  if (frames_++ == 0) {
+    evaluated_ = evaluated;
+    visibility_.assign(evaluated.size(), 0), truth_.assign(evaluated.size(), 0);
+  }
+  for (std::size_t i = 0; i < evaluated.size(); ++i) {
+    evaluated_[i] = evaluated_[i] && evaluated[i];
+    visibility_[i] += double(output.visibility[i]), truth_[i] += double(matched.visibility[i]);
+  }
+  light_samples_ += samples.count();
+  if (output.mask.empty()) return;
   const MaskMismatch m =
       mask_mismatch(matched.mask, output.mask, samples.mask_words(), samples.count(), evaluated);
-  j["mask_bit_mismatch"] = m.bits ? nlohmann::json(m.mask_bit_mismatch()) : nlohmann::json();
-  j["mask_bits_off"] = m.bits_off;
-  j["pixels_off"] = m.pixels ? nlohmann::json(double(m.pixels_off) / double(m.pixels)) : nlohmann::json();
-  return j;
+  if (!bits_) bits_.emplace();
+  bits_->bits += m.bits, bits_->bits_off += m.bits_off;
+  bits_->pixels += m.pixels, bits_->pixels_off += m.pixels_off;
+}
+
+void Accumulation::take_mean(Output& output) const {
+  for (std::size_t i = 0; i < visibility_.size(); ++i)
+    output.visibility[i] = evaluated_[i] ? static_cast<float>(visibility_[i] / frames_) : 1;
+}
+
+std::vector<float> Accumulation::truth() const {
+  std::vector<float> mean(truth_.size());
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = static_cast<float>(truth_[i] / frames_);
+  return mean;
 }
 
 nlohmann::json converged_metrics(const Output& output, const ReferenceScene::Converged& converged,
@@ -111,6 +145,7 @@ nlohmann::json converged_metrics(const Output& output, const ReferenceScene::Con
   const ScalarImage reference{view.width, view.height, converged.visibility, both};
   const ScalarImage test{view.width, view.height, output.visibility, both};
   const ImageErrors e = image_errors(reference, test);
+  // Judged by its visibility: with the harness's cosine, whatever its own.
   const auto picture =
       shade(view, frame, with_reference_elsewhere(output.visibility, converged.visibility, both));
   const auto truth = shade(view, frame, converged.visibility);

@@ -51,8 +51,9 @@ std::string Pictures::visibility(const std::string& folder, const ViewSamplesHos
 }
 
 void Pictures::shaded(nlohmann::json& images, const char* name, const std::string& folder,
-                      const ViewSamplesHost& view, const Frame& frame, std::span<const float> v) const {
-  const auto linear = shade(view, frame, v);
+                      const ViewSamplesHost& view, const Frame& frame, std::span<const float> v,
+                      std::span<const float> cosines) const {
+  const auto linear = shade(view, frame, v, cosines);
   const std::string exr = make(folder, "shaded.exr"), png = make(folder, "shaded.png");
   write_exr(root_ / exr, color_image(linear, view.width, view.height));
   write_png(root_ / png, tonemap(linear, view.width, view.height));
@@ -106,7 +107,7 @@ nlohmann::json Pictures::write(const PointRun& run, const Output& output, std::s
         std::filesystem::exists(root_ / path) ? path : visibility(truth_folder, view, truth);
   }
   if (wanted("shaded")) {
-    shaded(images, "shaded", folder, view, frame, output.visibility);
+    shaded(images, "shaded", folder, view, frame, output.visibility, output.cosines);
     if (std::filesystem::exists(root_ / truth_folder / "shaded.png"))
       images["reference_shaded"] = truth_folder + "/shaded.png";
     else

@@ -27,7 +27,8 @@ class Pictures {
   std::string visibility(const std::string& folder, const ViewSamplesHost& view,
                          std::span<const float> v) const;
   void shaded(nlohmann::json& images, const char* name, const std::string& folder,
-              const ViewSamplesHost& view, const Frame& frame, std::span<const float> v) const;
+              const ViewSamplesHost& view, const Frame& frame, std::span<const float> v,
+              std::span<const float> cosines = {}) const;
   std::string mask(const std::string& folder, const PointRun& run, const Output& output) const;
   void view_pictures(nlohmann::json& images, const std::string& folder, const ViewSamplesHost& view) const;
   std::string make(const std::string& folder, const char* file) const;

@@ -35,7 +35,7 @@ PointRun::PointRun(const Point& point, const TechniqueInfo& info, View& view, Ou
       limits_(limits),
       lit_(view.lit_frame(point)) {
   dynamic_ = lit_->step.topology || lit_->step.positions || lit_->step.light ||
-             info_.rebuild_each_frame(point_.params);
+             info_.rebuild_each_frame(point_.params) || point_.accumulate > 1;
   case_.device = &passes.device();
   case_.frame = &lit_->current;
   case_.geometry = &view.geometry();
@@ -62,6 +62,15 @@ std::optional<std::string> PointRun::unsupported() const {
     return fmt::format("{} takes lights of kind {}; '{}' is a {} light.", info_.name, takes, point_.light,
                        to_string(kind));
   }
+  const LightSamples& samples = *case_.light_samples;
+  if (point_.light_samples.rotation != LightRotation::none && samples.count() > 1) {
+    if (auto reason = why_not_rotated(lit_->current.light)) return reason;
+    if (!info_.rotates)
+      return fmt::format("{} takes one set of light samples for all pixels, not one that each pixel moves.",
+                         info_.name);
+  }
+  if (point_.accumulate > 1)
+    if (auto reason = why_not_jittered(lit_->current.light)) return reason;
   return technique_->supports(case_);
 }
 
@@ -103,12 +112,13 @@ void PointRun::prepare() {
 
   step("first frame");
   poison_output();
-  first_frame_ms = frame().frame_ms();
+  first_frame_ms = frame_of_set(0).frame_ms();
   heartbeat_.stage("read back");
   output_ = read_output();
   {
     CostTimer timer(costs_, "counters");  // a technique may render once more to count what it does
     output_.claimed = technique_->evaluated_mask();
+    output_.cosines = technique_->cosines();
     output_.counters = technique_->counters();
     passes_.take_times();
   }
@@ -135,14 +145,30 @@ void PointRun::rebuild() {
   heartbeat_.limit(0);
 }
 
-FrameTimes PointRun::frame() {
+FrameTimes PointRun::frame() { return frame_of_set((set_ + 1) % point_.accumulate); }
+
+void PointRun::take_set(int set) {
+  heartbeat_.stage("accumulation");
+  heartbeat_.limit(limits_.frame_s);
+  frame_of_set(set);
+  output_ = read_output();
+  output_.claimed = technique_->evaluated_mask();
+  output_.cosines = technique_->cosines();
+  passes_.take_times();
+  heartbeat_.limit(0);
+}
+
+FrameTimes PointRun::frame_of_set(int set) {
+  set_ = set;
+  case_.light_samples = &view_.light_samples(*lit_, point_, set);
   bind_output();
   FrameTimes times;
   CostTimer timer(costs_, "technique");
   const double start = now_s();
   // A point that is dynamic by its parameters alone is told that every vertex moved.
   Changes step_changes = lit_->step;
-  if (dynamic_ && !lit_->previous) step_changes.positions = true;
+  if (info_.rebuild_each_frame(point_.params) && !lit_->previous) step_changes.positions = true;
+  if (point_.accumulate > 1) step_changes.light = true;
   lit_->current.changes = step_changes;
   if (dynamic_) {
     technique_->build(case_, passes_);
@@ -238,9 +264,13 @@ std::string PointRun::output_hash(const Output& output) const {
 void PointRun::seal_output(std::vector<uint8_t> evaluated) {
   evaluated_ = std::move(evaluated);
   first_hash_ = output_hash(output_);
-  output_ = {};
 }
 
-bool PointRun::repeats_first_frame() { return output_hash(read_output()) == first_hash_; }
+void PointRun::drop_output() { output_ = {}; }
+
+bool PointRun::repeats_first_frame() {
+  if (set_ != 0) frame_of_set(0);
+  return output_hash(read_output()) == first_hash_;
+}
 
 }  // namespace penumbra::run

@@ -26,6 +26,7 @@ struct Output {
   std::vector<float> visibility;
   std::vector<uint32_t> mask;    // empty for techniques that are not sampled
   std::vector<uint8_t> claimed;  // empty: everywhere
+  std::vector<float> cosines;    // empty: the harness's
   Counters counters;
 };
 
@@ -56,7 +57,8 @@ class PointRun {
   const TechniqueInfo& info() const { return info_; }
   const LitFrame& lit() const { return *lit_; }
   LitFrame& lit() { return *lit_; }
-  // Built anew in every frame: because the parameters say so, or because the scene or its light moves.
+  // Built anew in every frame: because the parameters say so, because the scene or its light moves, or
+  // because every frame has another set of light samples.
   bool dynamic() const { return dynamic_; }
   ReferenceOrigin origin() const;
 
@@ -65,11 +67,16 @@ class PointRun {
   // Set-up, build, first frame; afterwards output() and memory() say what came. Throws PointError.
   void prepare();
   Output& output() { return output_; }
+  // The frame of another set of an accumulation, after prepare(), which took set 0; output() is then its own.
+  // Throws PointError.
+  void take_set(int set);
+  const LightSamples& light_samples() const { return *case_.light_samples; }
   const PointMemory& memory() const { return memory_; }
-  // Keeps a hash of the output's evaluated pixels and lets the rest go.
+  // Keeps a hash of the output's evaluated pixels: of set 0, before another is taken.
   void seal_output(std::vector<uint8_t> evaluated);
+  void drop_output();
 
-  // One frame more. Throws PointError.
+  // One frame more; of an accumulation, of the next set. Throws PointError.
   FrameTimes frame();
   // One build more of a point that is not dynamic, as if the scene were new.
   void rebuild();
@@ -84,6 +91,7 @@ class PointRun {
 
  private:
   void build(const Changes& changes);
+  FrameTimes frame_of_set(int set);
   std::size_t pixels() const;
   std::size_t mask_words() const;  // of all pixels
   void allocate_output();
@@ -102,6 +110,7 @@ class PointRun {
   TimeLimits limits_;
   std::shared_ptr<LitFrame> lit_;
   bool dynamic_ = false;
+  int set_ = 0;  // of the last frame
   Case case_;
   RenderInput input_;
   std::unique_ptr<Technique> technique_;

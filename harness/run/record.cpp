@@ -32,6 +32,8 @@ nlohmann::json to_json(const Point& p) {
           {"samples_height", p.light_samples.height},
           {"samples_count", p.light_samples.count},
           {"samples_pattern", static_cast<int>(p.light_samples.pattern)},
+          {"samples_rotation", static_cast<int>(p.light_samples.rotation)},
+          {"accumulate", p.accumulate},
           {"samples_seed", p.light_samples.seed},
           {"sampled", p.sampled},
           {"light_size", p.light_size},
@@ -56,6 +58,8 @@ Point point_from_json(const nlohmann::json& j) {
   p.light_samples.height = j.at("samples_height");
   p.light_samples.count = j.at("samples_count");
   p.light_samples.pattern = static_cast<LightPattern>(j.at("samples_pattern").get<int>());
+  p.light_samples.rotation = static_cast<LightRotation>(j.at("samples_rotation").get<int>());
+  p.accumulate = j.at("accumulate");
   p.light_samples.seed = j.at("samples_seed");
   p.sampled = j.at("sampled");
   p.light_size = j.at("light_size");
@@ -80,6 +84,9 @@ nlohmann::json record_of(const Point& p) {
     else
       params["mask_size"] = extent_to_json(p.light_samples.width, p.light_samples.height);
     params["light_pattern"] = light_pattern_names()[static_cast<std::size_t>(p.light_samples.pattern)];
+    if (p.light_samples.rotation != LightRotation::none)
+      params["light_rotation"] = light_rotation_names()[static_cast<std::size_t>(p.light_samples.rotation)];
+    if (p.accumulate > 1) params["accumulate"] = p.accumulate;
   }
   for (const auto& [name, value] : p.params) params[name] = param_to_json(value);
   nlohmann::json record = {{"id", p.id},       {"technique", p.technique}, {"scene", p.scene},

@@ -64,7 +64,7 @@ double CostModel::expected_s(const Point& p) const {
   const double frames =
       std::max({double(measure_.repetitions), measure_.min_time_s / std::max(frame_s, 1e-6), 1.0});
   return guessed_overhead_s + std::min(frames * frame_s, measure_.max_time_s) +
-         (measure_.warmup + 1) * frame_s;
+         (measure_.warmup + p.accumulate) * frame_s;
 }
 
 void CostModel::learn(const Point& p, double frame_s) {

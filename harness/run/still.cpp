@@ -29,10 +29,15 @@ Still render_still(const Point& point, const Registry& registry,
     still.unsupported = *reason;
     return still;
   }
-  const auto evaluated = evaluated_pixels(view.matched(run.lit(), point, run.origin()), run.output().claimed);
-  finish_output(run.output(), evaluated, point.width);
+  Accumulation frames;
+  for (int set = 0; set < point.accumulate; ++set) {
+    if (set > 0) run.take_set(set);
+    frames.add(run.output(), view.matched(run.lit(), point, run.origin(), set), run.light_samples(),
+               point.width);
+  }
+  frames.take_mean(run.output());
   still.visibility = run.output().visibility;
-  still.shaded = shade(view.samples().host(), run.lit().current, still.visibility);
+  still.shaded = shade(view.samples().host(), run.lit().current, still.visibility, run.output().cosines);
   const FrameTimes times = run.frame();
   still.passes = times.build;
   still.passes.insert(still.passes.end(), times.render.begin(), times.render.end());

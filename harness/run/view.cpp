@@ -13,10 +13,10 @@ namespace {
 // Beyond it the oldest masks make room: a sweep of large masks must not fill the memory with references.
 constexpr std::size_t matched_budget_bytes = std::size_t{1} << 30;
 
-std::string samples_key(const LitFrame& lit, const Point& p) {
+std::string samples_key(const LitFrame& lit, const Point& p, int set) {
   const LightSampleRequest& r = p.light_samples;
-  return fmt::format("{}/{}x{}/{}/{}/{}", lit.key, r.width, r.height, r.count, static_cast<int>(r.pattern),
-                     r.seed);
+  return fmt::format("{}/{}x{}/{}/{}/{}/{}/{}", lit.key, r.width, r.height, r.count,
+                     static_cast<int>(r.pattern), r.seed, static_cast<int>(r.rotation), set);
 }
 
 double total_ms(const std::vector<gpu::PassTime>& times) {
@@ -107,11 +107,14 @@ const std::vector<PastPixels>& View::past(LitFrame& lit) {
   return past_;
 }
 
-const LightSamples& View::light_samples(const LitFrame& lit, const Point& point) {
-  const std::string key = samples_key(lit, point);
+const LightSamples& View::light_samples(const LitFrame& lit, const Point& point, int set) {
+  const std::string key = samples_key(lit, point, set);
   auto it = light_samples_.find(key);
-  if (it == light_samples_.end())
-    it = light_samples_.emplace(key, make_light_samples(lit.current.light, point.light_samples)).first;
+  if (it == light_samples_.end()) {
+    LightSampleRequest request = point.light_samples;
+    request.set = set;
+    it = light_samples_.emplace(key, make_light_samples(lit.current.light, request)).first;
+  }
   return it->second;
 }
 
@@ -120,25 +123,27 @@ ReferenceScene& View::reference() {
   return *reference_;
 }
 
-const MatchedReference& View::matched(const LitFrame& lit, const Point& point, ReferenceOrigin origin) {
-  const std::string key = fmt::format("{}/{}", samples_key(lit, point), static_cast<int>(origin));
+const MatchedReference& View::matched(const LitFrame& lit, const Point& point, ReferenceOrigin origin,
+                                      int set) {
+  const std::string key = fmt::format("{}/{}", samples_key(lit, point, set), static_cast<int>(origin));
   if (const auto it = matched_.find(key); it != matched_.end()) return it->second;
   CostTimer timer(costs_, "references");
   std::size_t held = 0;
   for (const auto& [name, entry] : matched_) held += entry.mask.size() * sizeof(uint32_t);
   if (held > matched_budget_bytes) matched_.clear();
   return matched_[key] =
-             reference().matched(samples_->host(), lit.current.light, light_samples(lit, point), origin);
+             reference().matched(samples_->host(), lit.current.light, light_samples(lit, point, set), origin);
 }
 
 const ReferenceScene::Converged& View::converged(const LitFrame& lit, const Point& point,
                                                  ReferenceOrigin origin, int n,
-                                                 const std::filesystem::path& cache) {
-  const std::string key = fmt::format("{}/{}/{}", lit.key, n, static_cast<int>(origin));
+                                                 const std::filesystem::path& cache, SphereAs sphere) {
+  const std::string key =
+      fmt::format("{}/{}/{}/{}", lit.key, n, static_cast<int>(origin), static_cast<int>(sphere));
   if (const auto it = converged_.find(key); it != converged_.end()) return it->second;
   CostTimer timer(costs_, "references");
   return converged_[key] =
-             reference().converged(samples_->host(), lit.current.light, n, point.seed, origin, cache);
+             reference().converged(samples_->host(), lit.current.light, n, point.seed, origin, cache, sphere);
 }
 
 }  // namespace penumbra::run

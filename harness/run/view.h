@@ -42,10 +42,13 @@ class View {
   const GeometryOnDevice& geometry() const { return geometry_; }
   const ViewSamples& samples() const { return *samples_; }
 
-  const LightSamples& light_samples(const LitFrame& lit, const Point& point);
-  const MatchedReference& matched(const LitFrame& lit, const Point& point, ReferenceOrigin origin);
+  // `set`: of the jitter's, below the point's `accumulate`.
+  const LightSamples& light_samples(const LitFrame& lit, const Point& point, int set = 0);
+  const MatchedReference& matched(const LitFrame& lit, const Point& point, ReferenceOrigin origin,
+                                  int set = 0);
   const ReferenceScene::Converged& converged(const LitFrame& lit, const Point& point, ReferenceOrigin origin,
-                                             int n, const std::filesystem::path& cache);
+                                             int n, const std::filesystem::path& cache,
+                                             SphereAs sphere = SphereAs::ball);
   // Where each pixel was a frame before: made once for all techniques.
   const std::vector<PastPixels>& past(LitFrame& lit);
   // For run.json: camera, resolution, frame, triangles, view_samples_ms and its passes, upload_ms.

@@ -3,15 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "samples/shaders/light_rotation.h"
+
 namespace penumbra {
 namespace {
 
-// A well-mixed 32-bit hash [Jarzynski 2020, PCG].
-uint32_t pcg(uint32_t v) {
-  const uint32_t state = v * 747796405U + 2891336453U;
-  const uint32_t word = ((state >> ((state >> 28U) + 4U)) ^ state) * 277803737U;
-  return (word >> 22U) ^ word;
-}
+uint32_t pcg(uint32_t v) { return light_rotation::rotation_hash(v); }
 
 double unit(uint32_t bits) { return double(bits) * 0x1p-32; }
 
@@ -124,34 +121,150 @@ void add(LightSamples& out, const Light& light, UnitPoint u) {
   out.weights.push_back(light.kind == LightKind::textured_rectangle ? texture_weight(light, u) : 1.0f);
 }
 
+double wrapped(double x) { return x - std::floor(x); }
+
+// Set 0 stands at the cells' centres.
+Vec2f shift_of_set(int set) {
+  if (set == 0) return {0, 0};
+  const auto f = static_cast<uint32_t>(set);
+  return {static_cast<float>(radical_inverse(f, 2) - 0.5), static_cast<float>(radical_inverse(f, 3) - 0.5)};
+}
+
+// Sample i of n of the request's set. `in_plane`: of a regular grid in a rectangle, moved by `shift` cells.
+UnitPoint unit_point(const LightSampleRequest& r, uint32_t i, uint32_t n, Vec2f shift, bool in_plane) {
+  const auto set = static_cast<uint32_t>(r.set);
+  if (r.pattern == LightPattern::halton) return halton(i + set * n, r.seed);
+  const bool jitter = r.pattern == LightPattern::jittered;
+  const uint32_t seed = set == 0 ? r.seed : pcg(r.seed + 0x9e3779b9U * set);
+  UnitPoint u{};
+  if (r.count == 0) {
+    const auto w = static_cast<uint32_t>(r.width), h = static_cast<uint32_t>(r.height);
+    const double dx = jitter ? random(seed, i, 0) : 0.5 + double(shift.x),
+                 dy = jitter ? random(seed, i, 1) : 0.5 + double(shift.y);
+    u = {(i % w + dx) / w, (i / w + dy) / h, radical_inverse(i, 5) + 0.5 / n};
+  } else {
+    u = lattice(i, n);
+    if (jitter) u = {(i + random(seed, i, 0)) / n, u.t, random(seed, i, 2)};
+  }
+  if (set == 0 || jitter || in_plane) return u;
+  // Around the light by a Kronecker sequence in three dimensions (powers of 1 / 1.2207...).
+  return {wrapped(u.s + 0.8191725134 * set), wrapped(u.t + 0.6710436067 * set),
+          wrapped(u.r + 0.5497004779 * set)};
+}
+
+// Lets each pixel move the set.
+void rotate(LightSamples& out, const Light& light, const std::vector<UnitPoint>& units, uint32_t seed) {
+  if (why_not_rotated(light)) return;
+  out.move_seed = seed & 0xffffffU;
+  if (light.kind == LightKind::sphere) {
+    out.move = PixelMove::turn;
+    out.span_u = light.center;
+  } else if (out.width > 0) {
+    out.move = PixelMove::shift;
+    out.span_u = light.edge_u / static_cast<float>(out.width);
+    out.span_v = light.edge_v / static_cast<float>(out.height);
+  } else {
+    out.move = PixelMove::wrap;
+    out.span_u = light.edge_u, out.span_v = light.edge_v;
+    for (const UnitPoint& u : units) out.units.push_back({static_cast<float>(u.s), static_cast<float>(u.t)});
+  }
+}
+
 }  // namespace
 
 LightSamples make_light_samples(const Light& light, const LightSampleRequest& request) {
   LightSamples out;
   if (single(light, out) || point_set(light, out)) return out;
-  const bool grid = request.count == 0;
+  const bool grid = request.count == 0, rotated = request.rotation == LightRotation::per_pixel;
   const auto w = static_cast<uint32_t>(request.width), h = static_cast<uint32_t>(request.height);
   const uint32_t n = grid ? w * h : static_cast<uint32_t>(request.count);
-  for (uint32_t i = 0; i < n; ++i) {
-    UnitPoint u{};
-    if (request.pattern == LightPattern::halton) {
-      u = halton(i, request.seed);
-    } else if (grid) {
-      const bool jitter = request.pattern == LightPattern::jittered;
-      const double dx = jitter ? random(request.seed, i, 0) : 0.5,
-                   dy = jitter ? random(request.seed, i, 1) : 0.5;
-      u = {(i % w + dx) / w, (i / w + dy) / h, (radical_inverse(i, 5) + 0.5 / n)};
-    } else {
-      u = lattice(i, n);
-      if (request.pattern == LightPattern::jittered)
-        u = {(i + random(request.seed, i, 0)) / n, u.t, random(request.seed, i, 2)};
-    }
-    add(out, light, u);
-  }
-  if (grid && request.pattern == LightPattern::regular && light.kind != LightKind::sphere)
+  const bool in_plane = grid && request.pattern == LightPattern::regular && light.kind != LightKind::sphere;
+  LightSampleRequest set = request;
+  if (rotated) set.set = 0;
+  if (in_plane) {
     out.width = request.width, out.height = request.height;
+    out.grid_shift = shift_of_set(set.set);
+  }
+  std::vector<UnitPoint> units;
+  for (uint32_t i = 0; i < n; ++i) units.push_back(unit_point(set, i, n, out.grid_shift, in_plane));
+  for (const UnitPoint& u : units) add(out, light, u);
+  if (rotated)
+    rotate(out, light, units, pcg(request.seed + 0x51ed270bU * static_cast<uint32_t>(request.set)));
   normalise_weights(out);
   return out;
+}
+
+std::optional<std::string> why_not_rotated(const Light& light) {
+  if (light.kind == LightKind::volume)
+    return "A volume light is its set of samples: it has no symmetry about which pixels could rotate them.";
+  if (light.kind == LightKind::textured_rectangle)
+    return "A textured light's samples have weights of their places: pixels that move them would need "
+           "weights "
+           "of their own.";
+  return std::nullopt;
+}
+
+std::optional<std::string> why_not_jittered(const Light& light) {
+  if (light.kind == LightKind::volume)
+    return "A volume light is its set of samples: frames have no other set to accumulate.";
+  return std::nullopt;
+}
+
+Vec2f LightSamples::draw(std::size_t pixel) const {
+  using namespace light_rotation;
+  const auto n = static_cast<uint32_t>(pixel);
+  Vec2f d;
+  if (move == PixelMove::turn)
+    rotation_turn(n, move_seed, d.x, d.y);
+  else if (move != PixelMove::none)
+    d = {rotation_unit(n, move_seed, 0), rotation_unit(n, move_seed, 1)};
+  return move == PixelMove::shift ? Vec2f{d.x - 0.5f, d.y - 0.5f} : d;
+}
+
+Vec4f LightSamples::at(std::size_t i, Vec2f drawn) const {
+  const Vec4f p = points[i];
+  if (move == PixelMove::none) return p;
+  if (move == PixelMove::turn) {
+    const float x = p.x - span_u.x, z = p.z - span_u.z;
+    return {span_u.x + (drawn.x * x + drawn.y * z), p.y, span_u.z + (drawn.x * z - drawn.y * x), p.w};
+  }
+  if (move == PixelMove::wrap) {
+    if (units[i].x + drawn.x >= 1) drawn.x -= 1;
+    if (units[i].y + drawn.y >= 1) drawn.y -= 1;
+  }
+  const Vec3f moved = p.xyz() + (span_u * drawn.x + span_v * drawn.y);
+  return {moved.x, moved.y, moved.z, p.w};
+}
+
+std::span<const Vec4f> LightSamples::of_pixel(std::size_t pixel, std::vector<Vec4f>& storage) const {
+  if (move == PixelMove::none) return points;
+  const Vec2f drawn = draw(pixel);
+  storage.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) storage[i] = at(i, drawn);
+  return storage;
+}
+
+Box LightSamples::bounds() const {
+  Box box;
+  for (const Vec4f& p : points) box.extend(p.xyz());
+  const Box own = box;
+  if (move == PixelMove::shift || move == PixelMove::wrap) {
+    // A sample that wraps around stays in the rectangle, which reaches from it as far as its place says.
+    const Vec2f place = move == PixelMove::wrap ? units.front() : Vec2f{};
+    const Vec3f first = points.front().xyz() - span_u * place.x - span_v * place.y;
+    for (const float s : {0.0f, 1.0f})
+      for (const float t : {0.0f, 1.0f}) {
+        if (move == PixelMove::wrap) box.extend(first + span_u * s + span_v * t);
+        const Vec3f half = span_u * (s - 0.5f) + span_v * (t - 0.5f);
+        if (move == PixelMove::shift) box.extend(own.lo + half), box.extend(own.hi + half);
+      }
+  } else if (move == PixelMove::turn) {
+    float radius = 0;
+    for (const Vec4f& p : points) radius = std::max(radius, std::hypot(p.x - span_u.x, p.z - span_u.z));
+    for (const float side : {-1.0f, 1.0f})
+      box.extend({span_u.x + side * radius, own.lo.y, span_u.z + side * radius});
+  }
+  return box;
 }
 
 LightSamples make_reference_samples(const Light& light, int n, uint32_t seed) {

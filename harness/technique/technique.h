@@ -74,6 +74,10 @@ class Technique {
   virtual Counters counters() { return {}; }
   // Bytes of the technique's own structures now (host and device).
   virtual uint64_t structure_bytes() const { return 0; }
+  // Per pixel, what takes the place of the cosine max(0, dot(Ns, l)) in the shaded picture of the last
+  // render, for techniques that shade as well; empty = the harness's own. Never timed: a pass of render()
+  // makes it.
+  virtual std::vector<float> cosines() { return {}; }
   // Per pixel, 1 where the technique claims an answer; empty = everywhere (planar shadows narrow it).
   virtual std::vector<uint8_t> evaluated_mask() { return {}; }
 };
@@ -85,7 +89,10 @@ struct TechniqueInfo {
   std::vector<LightKind> lights;  // kinds it can take
   std::vector<std::string> choosing;  // when to prefer it to others, in whole sentences; for `describe`
   bool sampled = false;           // uses the light samples and returns masks; else the light's centre or
-                                  // shape: mask_size, light_samples and light_pattern make no copies
+                                  // shape: the axes of light samples make no copies
+  bool rotates = false;           // takes light samples that each pixel moves (LightSamples::move)
+  bool sphere_as_disc = false;    // takes a sphere for the disc through its centre that faces the view
+                                  // sample, and is judged against that as well
   Residence residence = Residence::device;
   // Where that depends on the parameters (gears' backend).
   std::function<Residence(const ParamValues&)> residence_of;

@@ -18,8 +18,9 @@ bool is_regular_grid(const Light& light, const LightSamples& samples) {
   if (w > 64 || h > 64 || samples.count() != w * h || samples.count() < 2) return false;
   const float tolerance = 1e-5f * light.size() / static_cast<float>(std::max(w, h));
   for (int i = 0; i < samples.count(); ++i) {
-    const Vec3f at = light.at((static_cast<float>(i % w) + 0.5f) / static_cast<float>(w),
-                              (static_cast<float>(i / w) + 0.5f) / static_cast<float>(h));
+    const Vec3f at =
+        light.at((static_cast<float>(i % w) + 0.5f + samples.grid_shift.x) / static_cast<float>(w),
+                 (static_cast<float>(i / w) + 0.5f + samples.grid_shift.y) / static_cast<float>(h));
     const Vec4f p = samples.points[static_cast<std::size_t>(i)];
     const float rounding = 1e-6f * (std::abs(at.x) + std::abs(at.y) + std::abs(at.z));
     if (p.w == 0 || length(p.xyz() - at) > tolerance + rounding) return false;
@@ -33,6 +34,7 @@ MaskLayout mask_layout(const Light& light, const LightSamples& samples) {
   m.words = m.mask_words = samples.mask_words();
   m.weighted = !samples.uniform_weights;
   m.infinite = samples.points.front().w == 0;
+  m.move = samples.move;
   m.grid = is_regular_grid(light, samples);
   m.columns = m.samples;
   if (!m.grid) return m;

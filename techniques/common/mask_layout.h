@@ -13,12 +13,15 @@ struct MaskLayout {
   bool weighted = false;
   int columns = 1, rows = 1, pitch = 32;
   int samples = 1, words = 1;
-  int mask_words = 1;  // words of the mask that is handed out
-  bool packed = true;  // the walked mask is laid out as the one handed out
+  int mask_words = 1;                // words of the mask that is handed out
+  PixelMove move = PixelMove::none;  // by which each pixel moves the samples
+  bool clustered = false;            // walked in an order of its own, neighbours together
+  bool packed = true;                // the walked mask is laid out as the one handed out
   bool operator==(const MaskLayout&) const = default;
 };
 
-// True when the samples are the cell centres of a columns x rows grid on the light's rectangle.
+// True when the samples are a columns x rows grid on the light's rectangle, grid_shift off the cells'
+// centres.
 bool is_regular_grid(const Light& light, const LightSamples& samples);
 MaskLayout mask_layout(const Light& light, const LightSamples& samples);
 

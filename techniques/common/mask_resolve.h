@@ -12,7 +12,7 @@ class MaskResolve {
   // `walked` and `masks` are addresses: the same where the layout is packed. `weights`: 0 where all weigh the
   // same.
   void run(uint64_t walked, uint64_t masks, uint64_t visibility, uint64_t weights, uint32_t pixels,
-           gpu::PassRecorder& passes) const;
+           gpu::PassRecorder& passes, uint64_t places = 0) const;
 
  private:
   gpu::ComputePipeline pipeline_;

@@ -24,6 +24,9 @@ class Backend final : public Technique {
     if (c.light_samples->count() > most_light_samples)
       return fmt::format("gears takes at most {} light samples; these are {}.", most_light_samples,
                          c.light_samples->count());
+    if (c.light_samples->move != PixelMove::none)
+      return "the CPU backend of gears takes one set of light samples for all pixels, not one that each pixel "
+             "moves; backend=vulkan moves regular grids.";
     return std::nullopt;
   }
   void build(const Case& c, gpu::PassRecorder& passes) override;

@@ -25,6 +25,9 @@ class Gears final : public Technique {
     const uint32_t lanes = lanes_of(*c.device);
     if (lanes < 4 || !std::has_single_bit(lanes))
       return fmt::format("gears needs subgroups of 4 lanes or more; this device has {}.", lanes);
+    if (c.light_samples->move != PixelMove::none && !is_regular_grid(c.frame->light, *c.light_samples))
+      return "gears moves regular grids of light samples per pixel, up to 64 x 64 on a rectangle, and no "
+             "other sets.";
     if (c.light_samples->count() > most_light_samples)
       return fmt::format("gears takes at most {} light samples; these are {}.", most_light_samples,
                          c.light_samples->count());
@@ -101,6 +104,7 @@ TechniqueInfo gears_technique() {
                  LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
   info.choosing = exact_choice_in_words();
   info.sampled = true;
+  info.rotates = true;
   const auto on_host = [](const ParamValues& values) {
     return gears_params().read(values).backend == GearsParams::Backend::cpu;
   };

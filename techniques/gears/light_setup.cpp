@@ -41,16 +41,19 @@ void set_corners(LightBasis& basis, const Light& light) {
 }
 
 // Unit: one light sample; sample (0, 0) at the origin; z the distance before the light.
-void grid_space(FrameConstants& f, const Light& light, const MaskLayout& layout) {
+void grid_space(FrameConstants& f, const Light& light, const LightSamples& samples,
+                const MaskLayout& layout) {
   const Vec3d u(light.edge_u), v(light.edge_v), center(light.center);
   const double step_u = length(u) / layout.columns, step_v = length(v) / layout.rows;
-  const Vec3d first = center - u * 0.5 - v * 0.5 + u * (0.5 / layout.columns) + v * (0.5 / layout.rows);
+  const Vec2f shift = samples.grid_shift;
+  const Vec3d first = center - u * 0.5 - v * 0.5 + u * ((0.5 + double(shift.x)) / layout.columns) +
+                      v * ((0.5 + double(shift.y)) / layout.rows);
   f.light.row_x = with_w(normalize(u) / step_u);
   f.light.row_y = with_w(normalize(v) / step_v);
   f.light.row_z = with_w(normalize(Vec3d(light.direction)) / std::sqrt(step_u * step_v));
   f.light.origin = with_w(first);
   f.light.front_only = 1;
-  f.first = with_w(first);
+  f.first = with_w(first, static_cast<float>(samples.move_seed));
   f.step_u = with_w(u / static_cast<double>(layout.columns));
   f.step_v = with_w(v / static_cast<double>(layout.rows));
 }
@@ -104,7 +107,7 @@ FrameConstants frame_constants(const Light& light, const LightSamples& samples, 
   FrameConstants f{};
   const Box box = sample_box(samples);
   if (layout.grid)
-    grid_space(f, light, layout);
+    grid_space(f, light, samples, layout);
   else
     world_space(f, light, box, layout.infinite, bounds);
   if (layout.grid)

@@ -66,7 +66,8 @@ const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Vari
                                                 {10, v.begin},
                                                 {11, v.list},
                                                 {12, v.walk},
-                                                {13, state.walk_resolves() ? u(m.samples) : 0}};
+                                                {13, state.walk_resolves() ? u(m.samples) : 0},
+                                                {20, static_cast<uint32_t>(m.move)}};
   if (m.grid) {
     constants.insert(constants.end(),
                      {{1, u(m.columns)}, {2, u(m.rows)}, {3, u(m.pitch)}, {14, band_words(m)}});

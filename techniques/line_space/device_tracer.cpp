@@ -20,9 +20,10 @@ uint32_t samples_per_dispatch(const Grid& grid) {
 
 }  // namespace
 
-void DeviceTracer::setup(gpu::Device& device, uint32_t branching, uint32_t depth) {
+void DeviceTracer::setup(gpu::Device& device, uint32_t branching, uint32_t depth, Params::Start start) {
   constexpr std::array images{gpu::ImageUse::sampled_nearest, gpu::ImageUse::sampled_nearest};
-  const std::array<gpu::Specialization, 2> constants{{{0, branching}, {1, depth}}};
+  const std::array<gpu::Specialization, 3> constants{
+      {{0, branching}, {1, depth}, {2, static_cast<uint32_t>(start)}}};
   trace_ = gpu::ComputePipeline(device, line_space_trace_spv, sizeof(TracePush), constants);
   trace_images_ =
       gpu::ComputePipeline(device, line_space_trace_images_spv, sizeof(TracePush), constants, images);

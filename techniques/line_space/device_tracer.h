@@ -2,12 +2,14 @@
 #pragma once
 #include "technique/technique.h"
 #include "techniques/line_space/device_tree.h"
+#include "techniques/line_space/params.h"
 
 namespace penumbra::line_space {
 
 class DeviceTracer {
  public:
-  void setup(gpu::Device& device, uint32_t branching, uint32_t depth);
+  void setup(gpu::Device& device, uint32_t branching, uint32_t depth,
+             Params::Start start = Params::Start::node);
   // After the tree was made.
   void bind(const DeviceTree& tree);
   // Passes "upload_light", "trace", "resolve".

@@ -11,7 +11,7 @@ namespace {
 struct Walker {
   const uint32_t* tree;
   const uint32_t* line_space;
-  uint N, DEPTH;
+  uint N, DEPTH, START;
   uint tree_entry(uint place) const { return tree[place]; }
   uint line_space_word(uint place) const { return line_space[place]; }
 #include "techniques/line_space/shaders/traverse.glsl"
@@ -29,7 +29,7 @@ bool may_be_lit(Vec3f point, Vec3f normal, Vec4f towards, Vec4f emission) {
 }  // namespace
 
 bool HostTracer::blocked(Vec3f origin, Vec4f light_point) const {
-  Walker walker{pools_.tree.data(), pools_.line_space.data(), grid_.branching, grid_.depth};
+  Walker walker{pools_.tree.data(), pools_.line_space.data(), grid_.branching, grid_.depth, start_};
   const Vec3f o = scaled(origin - grid_.lo, grid_.fine_scale());
   const Vec3f d = scaled(light_point.xyz() - origin * light_point.w, grid_.fine_scale());
   Walker::Walk w = walker.begin_walk(o, d, light_point.w > 0.5F ? 1.000001F : walker.far_away);
@@ -38,7 +38,7 @@ bool HostTracer::blocked(Vec3f origin, Vec4f light_point) const {
 }
 
 bool HostTracer::start_cell(Vec3f origin, Vec3f& cell) const {
-  Walker walker{pools_.tree.data(), pools_.line_space.data(), grid_.branching, grid_.depth};
+  Walker walker{pools_.tree.data(), pools_.line_space.data(), grid_.branching, grid_.depth, start_};
   cell = walker.begin_walk(scaled(origin - grid_.lo, grid_.fine_scale()), {0, 0, 0}, 1).start;
   return cell.x >= 0;
 }

@@ -13,7 +13,8 @@ namespace penumbra::line_space {
 class HostTracer {
  public:
   // References are kept.
-  HostTracer(const Pools& pools, const Grid& grid) : pools_(pools), grid_(grid) {}
+  HostTracer(const Pools& pools, const Grid& grid, Params::Start start = Params::Start::node)
+      : pools_(pools), grid_(grid), start_(static_cast<uint32_t>(start)) {}
 
   // The segment from `origin` to a light sample (w = 0: without end) is taken for blocked.
   bool blocked(Vec3f origin, Vec4f light_point) const;
@@ -29,6 +30,7 @@ class HostTracer {
              uint32_t* mask, float& visibility) const;
   const Pools& pools_;
   const Grid& grid_;
+  uint32_t start_;
 };
 
 }  // namespace penumbra::line_space

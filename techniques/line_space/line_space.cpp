@@ -35,7 +35,7 @@ class LineSpace final : public Technique {
     const auto branching = static_cast<uint32_t>(params_.branching);
     passes.host_pass("shaft_table", [&] { table_ = ShaftTable(branching); });
     if (device_build()) device_tree_.setup(*c.device, branching);
-    if (!cpu()) tracer_.setup(*c.device, branching, static_cast<uint32_t>(params_.depth));
+    if (!cpu()) tracer_.setup(*c.device, branching, static_cast<uint32_t>(params_.depth), params_.start);
   }
 
   void build(const Case& c, gpu::PassRecorder& passes) override {
@@ -71,7 +71,8 @@ class LineSpace final : public Technique {
     mask_.resize(view.pixel_count() * static_cast<std::size_t>(samples.mask_words()));
     visibility_.resize(view.pixel_count());
     passes.host_pass("trace", [&] {
-      HostTracer(pools_, grid_).run(in.scene_case->frame->light, samples, view, mask_, visibility_);
+      HostTracer(pools_, grid_, params_.start)
+          .run(in.scene_case->frame->light, samples, view, mask_, visibility_);
     });
     gpu::upload(passes, "upload_result", *in.device.mask, mask_.data(), mask_.size() * sizeof(uint32_t));
     gpu::upload(passes, "upload_result", *in.device.visibility, visibility_.data(),

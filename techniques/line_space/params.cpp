@@ -20,6 +20,11 @@ const ParamTable<Params>& param_table() {
              {"", "",
               "Shape of the root node: the box of the triangles in it, or a cube about that box (nodes are "
               "then cubes)."});
+    t.choice(
+        "start", &Params::start, {"node", "neighbours", "coarse"},
+        {"", "",
+         "What is skipped where a segment begins: the finest subdivided node there, as the source says; that "
+         "and those which touch it; or the whole child of the root."});
     t.boolean("bounding_faces", &Params::bounding_faces,
               {"", "",
                "Keep triangles in a face of the scene's bounding box, such as a ground plane. They cannot "

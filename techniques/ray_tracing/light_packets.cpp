@@ -77,13 +77,14 @@ void LightPackets::assign(const LightSamples& samples, int lanes) {
                     tail = order.size() - (packets - 1) * lanes_;
   full_ = (1U << lanes) - 1, last_ = (1U << tail) - 1;
   x_.clear(), y_.clear(), z_.clear(), runs_.clear(), first_run_.assign(1, 0);
-  bounds_ = {};
-  for (const Vec4f& point : samples.points) bounds_.extend(point.xyz());
+  samples_.clear();
+  bounds_ = samples.bounds();
   for (std::size_t slot = 0; slot < packets * lanes_; ++slot) {
     const bool used = slot < order.size();
     const std::size_t sample = order[std::min(slot, order.size() - 1)];
     const Vec4f& p = samples.points[sample];
     x_.push_back(p.x), y_.push_back(p.y), z_.push_back(p.z);
+    samples_.push_back(static_cast<uint32_t>(sample));
     const std::size_t lane = slot % lanes_;
     const bool continues = lane > 0 && used && sample == order[slot - 1] + 1 && sample % 32 != 0;
     if (continues)
@@ -95,9 +96,18 @@ void LightPackets::assign(const LightSamples& samples, int lanes) {
   }
 }
 
+void LightPackets::move(const LightSamples& samples, Vec2f drawn, std::vector<float>& xyz) const {
+  const std::size_t n = slots();
+  xyz.resize(3 * n);
+  for (std::size_t slot = 0; slot < n; ++slot) {
+    const Vec4f p = samples.at(samples_[slot], drawn);
+    xyz[slot] = p.x, xyz[n + slot] = p.y, xyz[2 * n + slot] = p.z;
+  }
+}
+
 uint64_t LightPackets::bytes() const {
   return (x_.capacity() + y_.capacity() + z_.capacity()) * sizeof(float) + runs_.capacity() * sizeof(Run) +
-         first_run_.capacity() * sizeof(uint32_t);
+         samples_.capacity() * sizeof(uint32_t) + first_run_.capacity() * sizeof(uint32_t);
 }
 
 }  // namespace penumbra::ray_tracing

@@ -24,8 +24,12 @@ class LightPackets {
     for (uint32_t r = first_run_[packet]; r < first_run_[packet + 1]; ++r)
       mask[runs_[r].word] |= (lane_set >> runs_[r].lane & runs_[r].lane_bits) << runs_[r].shift;
   }
-  // Of all samples' coordinates.
+  // Of all samples' coordinates, as any pixel may take them.
   const Box& bounds() const { return bounds_; }
+  // All packets' coordinates as a pixel that has drawn `drawn` takes them: x, then y, then z, each in the
+  // order of x(0).
+  void move(const LightSamples& samples, Vec2f drawn, std::vector<float>& xyz) const;
+  std::size_t slots() const { return x_.size(); }
   uint64_t bytes() const;
 
  private:
@@ -37,6 +41,7 @@ class LightPackets {
   std::size_t lanes_ = 1;
   uint32_t full_ = 0, last_ = 0;
   std::vector<float> x_, y_, z_;
+  std::vector<uint32_t> samples_;  // of each slot
   Box bounds_;
   std::vector<Run> runs_;
   std::vector<uint32_t> first_run_{0};

@@ -111,6 +111,13 @@ class ShadowRays {
     }
   }
 
+  // One lane goes to light sample l from its own start.
+  void aim(int lane, Vec3f l) {
+    lanes(rays_.dir_x)[lane] = l.x - to_light_ * lanes(rays_.org_x)[lane];
+    lanes(rays_.dir_y)[lane] = l.y - to_light_ * lanes(rays_.org_y)[lane];
+    lanes(rays_.dir_z)[lane] = l.z - to_light_ * lanes(rays_.org_z)[lane];
+  }
+
   // Bit i set: lane i, one of `wanted`, is blocked.
   uint32_t blocked(RTCScene scene, embree::Query& query, uint32_t wanted) {
     if constexpr (N == 1) {

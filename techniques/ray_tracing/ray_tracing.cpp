@@ -110,6 +110,7 @@ TechniqueInfo ray_tracing_technique() {
                  LightKind::sphere, LightKind::textured_rectangle, LightKind::volume};
   info.choosing = exact_choice_in_words();
   info.sampled = true;
+  info.rotates = true;
   info.residence = Residence::host;
   info.rebuild_each_frame = [](const ParamValues& values) {
     return ray_tracing_params().read(values).dynamic;

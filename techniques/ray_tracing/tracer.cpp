@@ -57,9 +57,7 @@ struct Tracer::Task {
 void Tracer::assign(const Light& light, const LightSamples& samples, const TraceSettings& settings) {
   settings_ = settings;
   packets_.assign(samples, settings.packet);
-  points_ = samples.points;
-  weights_ = samples.weights;
-  uniform_ = samples.uniform_weights;
+  samples_ = samples;
   at_infinity_ = samples.points.front().w == 0;
   kind_ = light.kind, center_ = light.center, direction_ = light.direction;
   cone_cosine_ = static_cast<float>(std::cos(light.cone_degrees * std::numbers::pi / 180));
@@ -67,7 +65,8 @@ void Tracer::assign(const Light& light, const LightSamples& samples, const Trace
 }
 
 uint64_t Tracer::bytes() const {
-  return packets_.bytes() + points_.capacity() * sizeof(Vec4f) + weights_.capacity() * sizeof(float);
+  return packets_.bytes() + samples_.points.capacity() * sizeof(Vec4f) +
+         samples_.weights.capacity() * sizeof(float) + samples_.units.capacity() * sizeof(Vec2f);
 }
 
 // A rectangle shines from its front only and a spot light inside its cone only.
@@ -97,14 +96,14 @@ Tracer::Horizon Tracer::horizon(const ViewSample& v) const {
 }
 
 float Tracer::visibility(const uint32_t* mask) const {
-  if (uniform_) {
+  if (samples_.uniform_weights) {
     std::size_t blocked = 0;
     for (std::size_t w = 0; w < words_; ++w) blocked += bit_count(mask[w]);
-    return static_cast<float>(points_.size() - blocked) / static_cast<float>(points_.size());
+    return static_cast<float>(samples_.points.size() - blocked) / static_cast<float>(samples_.points.size());
   }
   double sum = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if ((mask[i / 32] >> (i % 32) & 1) == 0) sum += static_cast<double>(weights_[i]);
+  for (std::size_t i = 0; i < samples_.points.size(); ++i)
+    if ((mask[i / 32] >> (i % 32) & 1) == 0) sum += static_cast<double>(samples_.weights[i]);
   return static_cast<float>(std::min(sum, 1.0));
 }
 
@@ -113,7 +112,7 @@ std::size_t Tracer::gather(const Job& job, std::size_t tile, uint32_t* pixels) c
   const int across = tiles_across(job.view.width);
   const int x0 = static_cast<int>(tile) % across * tile_side,
             y0 = static_cast<int>(tile) / across * tile_side;
-  const uint32_t tail = points_.size() % 32 ? (1U << points_.size() % 32) - 1 : ~0U;
+  const uint32_t tail = samples_.points.size() % 32 ? (1U << samples_.points.size() % 32) - 1 : ~0U;
   std::size_t count = 0;
   for (std::size_t i = 0; i < tile_pixels; ++i) {
     int x = 0, y = 0;
@@ -130,19 +129,25 @@ std::size_t Tracer::gather(const Job& job, std::size_t tile, uint32_t* pixels) c
       continue;
     }
     if (sees) std::fill_n(mask, words_, ~0U), mask[words_ - 1] = tail;
-    if (sees) job.without_ray.fetch_add(points_.size(), std::memory_order_relaxed);
+    if (sees) job.without_ray.fetch_add(samples_.points.size(), std::memory_order_relaxed);
     job.visibility[pixel] = sees ? 0.0F : 1.0F;
   }
   return count;
 }
 
+Tracer::Targets Tracer::targets(std::size_t packet, const std::vector<float>& moved) const {
+  if (moved.empty()) return {packets_.x(packet), packets_.y(packet), packets_.z(packet)};
+  const float* x = &moved[packet * static_cast<std::size_t>(settings_.packet)];
+  return {x, x + packets_.slots(), x + 2 * packets_.slots()};
+}
+
 // Which of a packet's lanes are above the horizon.
 template <int N>
-uint32_t Tracer::above_horizon(const ViewSample& v, std::size_t packet) const {
-  const float *x = packets_.x(packet), *y = packets_.y(packet), *z = packets_.z(packet);
+uint32_t Tracer::above_horizon(const ViewSample& v, const Targets& t) const {
   const float scale = at_infinity_ ? 0.0F : 1.0F;
   alignas(64) float minus_height[N];
-  for (int lane = 0; lane < N; ++lane) minus_height[lane] = -height(v, x[lane], y[lane], z[lane], scale);
+  for (int lane = 0; lane < N; ++lane)
+    minus_height[lane] = -height(v, t.x[lane], t.y[lane], t.z[lane], scale);
   return below_zero<N>(minus_height);
 }
 
@@ -155,21 +160,26 @@ void Tracer::trace_light(const Task& task) const {
   // written in narrower pieces stalls the processor.
   ShadowRays<N> rays[2] = {ShadowRays<N>(at_infinity_), ShadowRays<N>(at_infinity_)};
   const std::size_t packets = packets_.count();
+  static thread_local std::vector<float> moved;
+  moved.clear();
   for (std::size_t i = 0; i < task.pixel_count; ++i) {
     const std::size_t pixel = task.pixels[i];
     const ViewSample v = view_sample(job.view, pixel);
+    if (samples_.move != PixelMove::none) packets_.move(samples_, samples_.draw(pixel), moved);
     const bool all_above = horizon(v) == Horizon::above;
     uint32_t* mask = &job.mask[pixel * words_];
     rays[0].start(v.origin), rays[1].start(v.origin);
-    rays[0].aim(packets_.x(0), packets_.y(0), packets_.z(0));
+    Targets here = targets(0, moved);
+    rays[0].aim(here.x, here.y, here.z);
     for (std::size_t p = 0; p < packets; ++p) {
-      const std::size_t next = std::min(p + 1, packets - 1);
-      rays[(p + 1) % 2].aim(packets_.x(next), packets_.y(next), packets_.z(next));
-      const uint32_t used = packets_.used(p), wanted = all_above ? used : used & above_horizon<N>(v, p);
+      const Targets next = targets(std::min(p + 1, packets - 1), moved);
+      rays[(p + 1) % 2].aim(next.x, next.y, next.z);
+      const uint32_t used = packets_.used(p), wanted = all_above ? used : used & above_horizon<N>(v, here);
       uint32_t bits = used & ~wanted;
       if (bits) task.without_ray += bit_count(bits);
       if (wanted) bits |= rays[p % 2].blocked(job.scene, query, wanted) & wanted;
       if (bits) packets_.scatter(p, bits, mask);
+      here = next;
     }
     job.visibility[pixel] = visibility(mask);
   }
@@ -181,23 +191,34 @@ void Tracer::trace_pixels(const Task& task) const {
   const Job& job = task.job;
   embree::Query query(settings_.coherence);
   ShadowRays<N> rays(at_infinity_);
+  const bool moves = samples_.move != PixelMove::none;
   const float scale = at_infinity_ ? 0.0F : 1.0F;
   for (std::size_t first = 0; first < task.pixel_count; first += N) {
     const std::size_t used = std::min<std::size_t>(N, task.pixel_count - first);
     ViewSample views[N];
+    Vec2f drawn[N];
     uint32_t* masks[N];
     for (std::size_t lane = 0; lane < N; ++lane) {
       const std::size_t pixel = task.pixels[first + std::min(lane, used - 1)];
       views[lane] = view_sample(job.view, pixel);
       masks[lane] = &job.mask[pixel * words_];
+      if (moves) drawn[lane] = samples_.draw(pixel);
       rays.start(static_cast<int>(lane), views[lane].origin);
     }
-    for (std::size_t s = 0; s < points_.size(); ++s) {
-      const Vec4f l = points_[s];
+    for (std::size_t s = 0; s < samples_.points.size(); ++s) {
       uint32_t wanted = 0;
-      for (std::size_t lane = 0; lane < used; ++lane)
-        if (height(views[lane], l.x, l.y, l.z, scale) > 0) wanted |= 1U << lane;
-      rays.aim(l.xyz());
+      if (moves) {
+        for (std::size_t lane = 0; lane < N; ++lane) {
+          const Vec4f l = samples_.at(s, drawn[lane]);
+          if (lane < used && height(views[lane], l.x, l.y, l.z, scale) > 0) wanted |= 1U << lane;
+          rays.aim(static_cast<int>(lane), l.xyz());
+        }
+      } else {
+        const Vec4f l = samples_.points[s];
+        for (std::size_t lane = 0; lane < used; ++lane)
+          if (height(views[lane], l.x, l.y, l.z, scale) > 0) wanted |= 1U << lane;
+        rays.aim(l.xyz());
+      }
       uint32_t bits = ((1U << used) - 1) & ~wanted;
       task.without_ray += bit_count(bits);
       if (wanted) bits |= rays.blocked(job.scene, query, wanted) & wanted;
@@ -230,7 +251,8 @@ void Tracer::run(const Job& job) const {
       else
         tracer.trace_light<N>(task);
       call.job.without_ray.fetch_add(task.without_ray, std::memory_order_relaxed);
-      call.job.rays.fetch_add(count * tracer.points_.size() - task.without_ray, std::memory_order_relaxed);
+      call.job.rays.fetch_add(count * tracer.samples_.points.size() - task.without_ray,
+                              std::memory_order_relaxed);
     }
   });
 }

@@ -55,17 +55,22 @@ class Tracer {
   template <int N>
   void trace_pixels(const Task& task) const;
   std::size_t gather(const Job& job, std::size_t tile, uint32_t* pixels) const;
+  // A packet's coordinates.
+  struct Targets {
+    const float *x, *y, *z;
+  };
+  // Of the common set, or (moved: of LightPackets::move) of a pixel's own.
+  Targets targets(std::size_t packet, const std::vector<float>& moved) const;
   template <int N>
-  uint32_t above_horizon(const ViewSample& v, std::size_t packet) const;
+  uint32_t above_horizon(const ViewSample& v, const Targets& targets) const;
   Horizon horizon(const ViewSample& v) const;
   bool lit_side(Vec3f position) const;
   float visibility(const uint32_t* mask) const;
 
   TraceSettings settings_;
   LightPackets packets_;
-  std::vector<Vec4f> points_;
-  std::vector<float> weights_;
-  bool uniform_ = true, at_infinity_ = false;
+  LightSamples samples_;
+  bool at_infinity_ = false;
   LightKind kind_ = LightKind::point;
   Vec3f center_, direction_;
   float cone_cosine_ = -1;

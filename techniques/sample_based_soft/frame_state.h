@@ -24,7 +24,9 @@ struct FrameState {
   gpu::Buffer frame, header, header_host, light_samples, weights;
   TexelArray frame_texels, sample_texels;
   ViewTexels view_texels;
-  gpu::Buffer walked;  // masks as walked, where they are not packed
+  gpu::Buffer places;   // of clustered light samples
+  gpu::Buffer walked;   // masks as walked, where they are not packed
+  gpu::Buffer through;  // visibility of transparent triangles, per pixel
 
   uint32_t pixels() const { return width * height; }
   uint32_t grid_size() const { return static_cast<uint32_t>(params.grid_size); }
@@ -39,6 +41,7 @@ struct FrameState {
   void begin(const RenderInput& in, gpu::PassRecorder& passes);
   // Waits for the device; what it counted so far.
   Header read_header(gpu::PassRecorder& passes);
+  bool transparent() const { return params.transparency > 0; }
   // A walk writes visibility itself: masks have their final layout, and all light samples one weight.
   bool walk_resolves() const;
   uint64_t masks_address(const RenderInput& in) const;

@@ -1,7 +1,10 @@
 #include "techniques/sample_based_soft/light_setup.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 #include "samples/view_samples.h"
 #include "techniques/common/light_frame.h"
@@ -37,12 +40,13 @@ void set_corners(LightBasis& basis, const Light& light) {
 }
 
 // Unit: one light sample; sample (0, 0) at the origin.
-void grid_space(LightSetup& s, const Light& light) {
+void grid_space(LightSetup& s, const Light& light, Vec2f shift) {
   FrameConstants& f = s.constants;
   const MaskLayout& layout = s.layout;
   const Vec3d u(light.edge_u), v(light.edge_v), center(light.center);
   const double step_u = length(u) / layout.columns, step_v = length(v) / layout.rows;
-  const Vec3d first = center - u * 0.5 - v * 0.5 + u * (0.5 / layout.columns) + v * (0.5 / layout.rows);
+  const Vec3d first = center - u * 0.5 - v * 0.5 + u * ((0.5 + double(shift.x)) / layout.columns) +
+                      v * ((0.5 + double(shift.y)) / layout.rows);
   f.light.row_x = with_w(normalize(u) / step_u);
   f.light.row_y = with_w(normalize(v) / step_v);
   f.light.row_z = with_w(normalize(Vec3d(light.direction)) / std::sqrt(step_u * step_v));
@@ -133,6 +137,36 @@ void set_limits(FrameConstants& f, const Box& bounds) {
               static_cast<float>(std::min(std::max(hi.y / near, hi.y / hi.z), w))};
 }
 
+// How pixels move the set (see FrameConstants); `box` and `radius` grow to what it then reaches.
+void place_moves(LightSetup& s, const LightSamples& samples, Box& box, double& radius) {
+  FrameConstants& f = s.constants;
+  f.first.w = static_cast<float>(samples.move_seed);
+  if (s.layout.grid || samples.move == PixelMove::none) return;
+  const Vec3d x(f.light.row_x.xyz()), y(f.light.row_y.xyz()), z(f.light.row_z.xyz());
+  if (samples.move == PixelMove::turn) {
+    f.first = with_w(normalize(Vec3d{x.y, y.y, z.y}), samples.move_seed);
+    f.step_u.w = dot(cross(x, y), z) < 0 ? -1.0f : 1.0f;
+    const float r = static_cast<float>(radius);
+    box.extend({-r, -r, -r}), box.extend({r, r, r});
+    return;
+  }
+  const Vec3d u(samples.span_u), v(samples.span_v);
+  f.step_u = with_w(u, length(u)), f.step_v = with_w(v, length(v));
+  const Box world = samples.bounds();
+  for (int i = 0; i < 8; ++i)
+    box.extend(Vec3f(
+        to_working(f, Vec3d{double(i & 1 ? world.hi.x : world.lo.x), double(i & 2 ? world.hi.y : world.lo.y),
+                            double(i & 4 ? world.hi.z : world.lo.z)})));
+  // In the light's plane.
+  const Box own = box;
+  box = {{own.lo.x, own.lo.y, 0}, {own.hi.x, own.hi.y, 0}};
+  radius = length(Vec3d(max(-box.lo, box.hi)));
+  for (std::size_t i = 0; i < samples.units.size(); ++i) {
+    s.samples[i].w = samples.units[i].x;
+    s.samples[samples.points.size() + i].w = samples.units[i].y;
+  }
+}
+
 void place_samples(LightSetup& s, const LightSamples& samples) {
   FrameConstants& f = s.constants;
   s.samples = samples.points;
@@ -147,12 +181,59 @@ void place_samples(LightSetup& s, const LightSamples& samples) {
     radius = std::max(radius, length(q));
   }
   // Samples of a regular grid lie at whole numbers; the rows' rounding must not move them off their plane.
-  if (s.layout.grid)
-    box = {{0, 0, 0}, {static_cast<float>(s.layout.columns - 1), static_cast<float>(s.layout.rows - 1), 0}};
+  if (s.layout.grid) {
+    const float reach = samples.move == PixelMove::none ? 0 : 0.5f;
+    box = {
+        {-reach, -reach, 0},
+        {static_cast<float>(s.layout.columns - 1) + reach, static_cast<float>(s.layout.rows - 1) + reach, 0}};
+  }
+  place_moves(s, samples, box, radius);
   s.radius = static_cast<float>(radius * 1.0001);
   const float grow = s.layout.grid ? 0 : f.pad;
   f.light_lo = {box.lo.x - grow, box.lo.y - grow, box.lo.z - grow, s.radius};
   f.light_hi = {box.hi.x + grow, box.hi.y + grow, box.hi.z + grow, 0};
+}
+
+constexpr std::size_t cluster = 16;  // light samples; as in mask_any.glsl
+
+// Puts indices into an order in which each cluster's samples are neighbours: median cuts, at whole clusters.
+void cut(std::span<uint32_t> indices, std::span<const Vec4f> at) {
+  if (indices.size() <= cluster) return;
+  Box box;
+  for (const uint32_t i : indices) box.extend(at[i].xyz());
+  const Vec3f extent = box.hi - box.lo;
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const std::size_t half = (indices.size() / cluster + 1) / 2 * cluster;
+  const auto along = [&](uint32_t i) { return std::pair(at[i].xyz()[axis], i); };
+  std::ranges::nth_element(indices, indices.begin() + static_cast<std::ptrdiff_t>(half), {}, along);
+  cut(indices.first(half), at);
+  cut(indices.subspan(half), at);
+}
+
+// Walks in an order in which neighbours share half words, with a box about each: most triangles hide few of
+// them.
+void cluster_samples(LightSetup& s) {
+  const std::size_t n = s.samples.size() / 2;
+  const std::vector<Vec4f> old = s.samples;
+  std::vector<uint32_t> order(n);
+  std::iota(order.begin(), order.end(), 0U);
+  cut(order, std::span(old).subspan(n));
+  s.places.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    s.samples[k] = old[order[k]], s.samples[n + k] = old[n + order[k]];
+    s.places[order[k]] = static_cast<uint32_t>(k);
+  }
+  for (std::size_t first = 0; first < n; first += cluster) {
+    Box box;
+    for (std::size_t k = first; k < std::min(first + cluster, n); ++k) box.extend(s.samples[n + k].xyz());
+    const Vec3f half = (box.hi - box.lo) * 0.5f, middle = box.lo + half;
+    // The middle is rounded.
+    const float pad =
+        s.constants.pad + 1e-6f * (std::abs(middle.x) + std::abs(middle.y) + std::abs(middle.z));
+    s.samples.push_back({middle.x, middle.y, middle.z, 0});
+    s.samples.push_back({half.x + pad, half.y + pad, half.z + pad, 0});
+  }
+  s.layout.clustered = true, s.layout.packed = false;
 }
 
 }  // namespace
@@ -163,11 +244,7 @@ bool outside(const Box& light, const Box& instance) {
   return false;
 }
 
-Box sample_box(const LightSamples& samples) {
-  Box box;
-  for (const Vec4f& p : samples.points) box.extend(p.xyz());
-  return box;
-}
+Box sample_box(const LightSamples& samples) { return samples.bounds(); }
 
 LightSetup light_setup(const Light& light, const LightSamples& samples, const Box& bounds, bool table) {
   LightSetup s;
@@ -179,7 +256,7 @@ LightSetup light_setup(const Light& light, const LightSamples& samples, const Bo
   }
   FrameConstants& f = s.constants;
   if (s.layout.grid)
-    grid_space(s, light);
+    grid_space(s, light, samples.grid_shift);
   else
     free_space(s, light, samples, bounds);
   f.light.front_only = is_rectangle(light);
@@ -193,6 +270,7 @@ LightSetup light_setup(const Light& light, const LightSamples& samples, const Bo
   set_limits(f, bounds);
   set_scene(f, bounds);
   place_samples(s, samples);
+  if (!s.layout.grid && !table && samples.count() > 32) cluster_samples(s);
   s.slack = 2 * relative_offset * bounds.diagonal();
   return s;
 }

@@ -13,7 +13,9 @@ struct LightSetup {
   float radius = 0;   // working space: no light sample is farther from the centre
   float slack = 0;    // world: more than |P' - P|
   FrameConstants constants{};
-  std::vector<Vec4f> samples;  // world, then working space
+  std::vector<Vec4f>
+      samples;  // world, then working space; clustered: then the clusters' boxes, see mask_any.glsl
+  std::vector<uint32_t> places;  // clustered: of each light sample among them
 };
 
 // `table`: masks are looked up, so regular grids get no layout of their own.

@@ -42,6 +42,18 @@ const ParamTable<Params>& param_table() {
         {"", "", "Leave out triangles whose plane has the light and a group of view samples on one side."});
     t.choice("triangle_order", &P::triangle_order, {"morton", "kd"},
              {"", "", "What makes triangles of a block neighbours: a Morton curve, or median cuts."});
+    t.number(
+        "transparency", &P::transparency, 0, 1,
+        {"", "",
+         "Share of light that each triangle lets through. Above 0 visibility is the product, over the "
+         "triangles that cover light samples, of each one's share weighted by its coverage; the masks stay "
+         "those of opaque triangles."});
+    t.boolean("coherent_shading", &P::coherent_shading,
+              {"", "",
+               "Shade the picture with vertex normals bent so that what turns away from the light is black; "
+               "visibility stays as it is."});
+    t.number("bend_weight", &P::bend_weight, 0.1, 1000,
+             {"", "c", "How fast coherent shading goes over from bent to smooth normals."});
     t.integer("list_budget_mib", &P::list_budget_mib, 1, 16384,
               {"MiB", "",
                "Memory for the lists of casters; lists of view samples that need more are done in turns."});

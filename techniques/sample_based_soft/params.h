@@ -21,6 +21,9 @@ struct Params {
   bool cull_back_faces = true;
   bool cull_supporting_planes = true;
   SpatialOrder triangle_order = SpatialOrder::kd;
+  float transparency = 0;
+  bool coherent_shading = false;
+  float bend_weight = 3;
   int list_budget_mib = 256;
   int dispatch_turns = 20000;
 };

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "techniques/common/mask_resolve.h"
+#include "techniques/sample_based_soft/coherent_shading.h"
 #include "techniques/sample_based_soft/soft_pass.h"
 
 namespace penumbra {
@@ -24,6 +25,10 @@ class SampleBasedSoft final : public Technique {
       return fmt::format("sample_based_soft needs subgroups of 4 lanes or more; this device has {}.", lanes);
     if (c.light_samples->points.front().w == 0)
       return "sample_based_soft sees the scene from the light's centre; a directional light has none.";
+    if (c.light_samples->move == PixelMove::wrap && state_.params.half_spaces == Params::HalfSpaces::table)
+      return "a table knows one set of light samples; those that each pixel wraps around the rectangle are "
+             "many. Regular grids and spheres can be rotated per pixel.";
+    if (state_.params.transparency > 0) return no_transparency(c);
     return std::nullopt;
   }
 
@@ -34,6 +39,7 @@ class SampleBasedSoft final : public Technique {
     lists_.setup(state_);
     coverage_.setup(state_, casters_);
     soft_.setup(state_, casters_);
+    if (state_.params.coherent_shading) shading_.setup(state_);
     resolve_.setup(*c.device, state_.light.layout);
   }
 
@@ -41,7 +47,10 @@ class SampleBasedSoft final : public Technique {
     const Changes& changes = c.frame->changes;
     if (!built_ || changes.topology || changes.light || changes.positions) state_.set_light(c, passes);
     if (!set_up_ || *set_up_ != std::pair(state_.light.layout, state_.light.ball)) setup(c, passes);
-    if (!built_ || changes.topology) casters_.build_topology(state_, c.frame->geometry, passes);
+    if (!built_ || changes.topology) {
+      casters_.build_topology(state_, c.frame->geometry, passes);
+      if (state_.params.coherent_shading) shading_.build(state_, c.frame->geometry, passes);
+    }
     if (!built_ || changes.topology || changes.light || changes.positions)
       casters_.build_closed(state_, c, passes);
     // In light space the table stays as it is while the light keeps its samples there.
@@ -65,12 +74,19 @@ class SampleBasedSoft final : public Technique {
 
   Counters counters() override;
 
+  std::vector<float> cosines() override {
+    return state_.params.coherent_shading && passes_ ? shading_.download(state_, *passes_)
+                                                     : std::vector<float>{};
+  }
+
   uint64_t structure_bytes() const override {
     return state_.bytes() + casters_.bytes() + lists_.bytes() + coverage_.bytes() + soft_.bytes() +
-           table_.bytes();
+           table_.bytes() + shading_.bytes();
   }
 
  private:
+  // Why transparent triangles cannot be weighted here, or nothing.
+  std::optional<std::string> no_transparency(const Case& c) const;
   void frame(const RenderInput& in, gpu::PassRecorder& passes, SoftPass::Statistics statistics);
   void add_list_counters(Counters& out) const;
 
@@ -81,6 +97,7 @@ class SampleBasedSoft final : public Technique {
   SoftPass soft_;
   PlaneTable table_;
   MaskResolve resolve_;
+  CoherentShading shading_;
   std::optional<std::pair<MaskLayout, bool>> set_up_;  // what the pipelines are made for
   std::vector<Vec4f> table_of_;
   bool built_ = false;
@@ -104,7 +121,27 @@ void SampleBasedSoft::frame(const RenderInput& in, gpu::PassRecorder& passes,
   }
   if (!state_.walk_resolves())
     resolve_.run(state_.masks_address(in), in.device.mask->address(), in.device.visibility->address(),
-                 state_.light.layout.weighted ? state_.weights.address() : 0, state_.pixels(), passes);
+                 state_.light.layout.weighted ? state_.weights.address() : 0, state_.pixels(), passes,
+                 state_.light.layout.clustered ? state_.places.address() : 0);
+  if (state_.transparent())
+    passes.device_pass("resolve", [&](gpu::Commands& commands) {
+      commands.barrier();
+      commands.copy(state_.through, *in.device.visibility, uint64_t{state_.pixels()} * 4);
+    });
+  if (state_.params.coherent_shading) shading_.run(state_, in, passes);
+}
+
+std::optional<std::string> SampleBasedSoft::no_transparency(const Case& c) const {
+  const MaskLayout layout = mask_layout(c.frame->light, *c.light_samples);
+  if (layout.weighted)
+    return "transparency weights triangles by how many light samples they cover; here samples differ in "
+           "weight.";
+  if (state_.params.restrict_to_penumbra)
+    return "transparency needs every light sample; restrict_to_penumbra lets one stand for all.";
+  if (words_per_pass(layout) < layout.words ||
+      (state_.params.half_spaces == Params::HalfSpaces::table && layout.words > 32))
+    return "transparency needs all light samples in one pass; these are too many.";
+  return std::nullopt;
 }
 
 void SampleBasedSoft::add_list_counters(Counters& out) const {
@@ -158,6 +195,7 @@ TechniqueInfo sample_based_soft_technique() {
   info.lights = {LightKind::point,  LightKind::spot,   LightKind::rectangle,
                  LightKind::sphere, LightKind::volume, LightKind::textured_rectangle};
   info.sampled = true;
+  info.rotates = true;
   info.make = [](const ParamValues& values) -> std::unique_ptr<Technique> {
     return std::make_unique<SampleBasedSoft>(param_table().read(values));
   };

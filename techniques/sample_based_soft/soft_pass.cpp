@@ -1,6 +1,7 @@
 #include "techniques/sample_based_soft/soft_pass.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "shaders/sample_based_soft_split_groups.h"
 #include "shaders/sample_based_soft_walk_any.h"
@@ -20,7 +21,8 @@ uint32_t band_words(const MaskLayout& m) { return m.pitch == 64 ? 4 : m.pitch ==
 uint32_t triangle_turns(const FrameState& state) {
   const MaskLayout& m = state.light.layout;
   if (m.grid) return u(m.pitch == 64 ? m.rows : m.words) + 2;
-  return u(words_per_pass(m)) * (32 / state.lanes + 1) + 2;
+  // Clusters of 16 samples, a turn for each and one per so many of their samples as there are lanes.
+  return u(words_per_pass(m)) * 2 * (16 / state.lanes + 3) + 4;
 }
 
 }  // namespace
@@ -64,14 +66,19 @@ const gpu::ComputePipeline& SoftPass::pipeline(const FrameState& state, const Va
                                                 {16, v.hard},
                                                 {17, params.restrict_to_penumbra},
                                                 {18, params.cull_supporting_planes},
-                                                {19, u(m.words)}};
+                                                {19, u(m.words)},
+                                                {20, static_cast<uint32_t>(m.move)},
+                                                {21, state.transparent()},
+                                                {22, std::bit_cast<uint32_t>(1 - params.transparency)},
+                                                {23, u(m.samples)}};
   if (m.grid) {
     constants.insert(constants.end(),
                      {{1, u(m.columns)}, {2, u(m.rows)}, {3, u(m.pitch)}, {14, band_words(m)}});
   } else {
     const bool table = params.half_spaces == Params::HalfSpaces::table;
-    constants.insert(constants.end(),
-                     {{1, u(m.samples)}, {5, table ? u(params.table_size) : 0}, {15, entry_texels(m)}});
+    constants.insert(
+        constants.end(),
+        {{24, m.clustered}, {1, u(m.samples)}, {5, table ? u(params.table_size) : 0}, {15, entry_texels(m)}});
   }
   const gpu::Spirv code =
       m.grid ? gpu::Spirv(sample_based_soft_walk_grid_spv) : gpu::Spirv(sample_based_soft_walk_any_spv);
@@ -88,7 +95,7 @@ void SoftPass::run(FrameState& state, const RenderInput& in, const Casters& cast
   const std::size_t capacity = lists.group_capacity(state);
   gpu::ensure(resume_, *state.device, capacity * 3 * 4, gpu::Memory::device, "groups to go on with");
   WalkConstants pc{};
-  pc.visibility = in.device.visibility->address();
+  pc.visibility = state.transparent() ? state.through.address() : in.device.visibility->address();
   pc.slots = lists.slots().address();
   pc.masks = state.masks_address(in);
   pc.list = casters.list().address();

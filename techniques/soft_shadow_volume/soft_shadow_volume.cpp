@@ -93,6 +93,7 @@ TechniqueInfo soft_shadow_volume_technique() {
   info.params = param_table().infos();
   info.lights = {LightKind::point, LightKind::rectangle, LightKind::sphere, LightKind::textured_rectangle};
   info.sampled = false;
+  info.sphere_as_disc = true;
   info.residence = Residence::device;
   // It works at P itself; what a surface hides from its own points follows from its topology, as for P' just
   // off it.

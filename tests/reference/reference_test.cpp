@@ -217,6 +217,39 @@ TEST(Converged, OfAPointLightIsTheMatchedReference) {
   EXPECT_EQ(c.mean_standard_error, 0);
 }
 
+// The disc has a closed form; the ball, which most techniques sample, is another light.
+TEST(Converged, OfASphereTakenAsTheDiscThatFacesTheViewSampleAgreesWithTheClosedForm) {
+  const BoxScene scene;
+  Light light = scene.light;
+  light.kind = LightKind::sphere, light.radius = 0.5F;
+  const ReferenceScene reference(scene.geometry);
+  const auto rms_error = [&](SphereAs sphere) {
+    const auto c =
+        reference.converged(scene.view.host(), light, 1024, 1, ReferenceOrigin::offset, {}, sphere);
+    double squares = 0;
+    int penumbra = 0;
+    for (std::size_t i = 0; i < scene.view.triangle.size(); ++i) {
+      if (scene.view.triangle[i] > 1) continue;
+      const Vec3d p(scene.view.origin[i].xyz());
+      const double exact = testing::disc_visibility(Vec3d(light.center), double(light.radius), p, {0, 1, 0},
+                                                    testing::faces_towards(p, scene.lo, scene.hi));
+      if (exact > 0 && exact < 1) squares += std::pow(double(c.visibility[i]) - exact, 2), ++penumbra;
+    }
+    EXPECT_GT(penumbra, 100);
+    return std::sqrt(squares / penumbra);
+  };
+  EXPECT_LT(rms_error(SphereAs::disc), 0.005);
+  EXPECT_GT(rms_error(SphereAs::ball), 0.02);
+}
+
+// Each pixel's own set, against double precision.
+TEST(Matched, TakesTheSamplesThatEachPixelMoves) {
+  const SoupScene scene;
+  LightSampleRequest request{8, 8};
+  request.rotation = LightRotation::per_pixel;
+  expect_only_ties(scene, scene.light, make_light_samples(scene.light, request), ReferenceOrigin::offset);
+}
+
 TEST(Converged, TakesASingleSample) {
   const BoxScene scene;
   const auto c = ReferenceScene(scene.geometry)

@@ -102,6 +102,119 @@ TEST(LightSamples, TextureWeightsAreNormalisedAndPlaced) {
   EXPECT_FLOAT_EQ(s.weights[3], 0.375f);
 }
 
+// Means of the sets that `pixels` pixels, or the first `sets` sets of a jitter, have: of x and of x^2.
+struct Moments {
+  double mean = 0, square = 0;
+  void add(const Vec4f& p, double weight) {
+    mean += weight * double(p.x), square += weight * double(p.x) * double(p.x);
+  }
+};
+
+TEST(LightRotation, MovesARegularGridWithinItsCells) {
+  LightSampleRequest request{.width = 4, .height = 2};
+  const LightSamples plain = make_light_samples(unit_square(), request);
+  request.rotation = LightRotation::per_pixel;
+  const LightSamples s = make_light_samples(unit_square(), request);
+  EXPECT_EQ(s.points, plain.points);
+  EXPECT_EQ(s.move, PixelMove::shift);
+  Moments m;
+  std::set<float> different;
+  for (std::size_t pixel = 0; pixel < 4096; ++pixel)
+    for (std::size_t i = 0; i < 8; ++i) {
+      const Vec4f p = s.at(i, s.draw(pixel)), c = plain.points[i];
+      EXPECT_LE(std::abs(p.x - c.x), 0.125001f);
+      EXPECT_LE(std::abs(p.y - c.y), 0.250001f);
+      m.add(p, 1 / (8 * 4096.0));
+      if (i == 0) different.insert(p.x);
+    }
+  EXPECT_GT(different.size(), 4000U);
+  EXPECT_NEAR(m.mean, 0.5, 0.002);
+  EXPECT_NEAR(m.square, 1.0 / 3, 0.002);
+  EXPECT_NEAR(s.bounds().hi.x, 1, 1e-6);
+  EXPECT_NEAR(s.bounds().lo.y, 0, 1e-6);
+}
+
+TEST(LightRotation, WrapsOtherSetsAroundTheRectangle) {
+  LightSampleRequest request{.count = 13};
+  request.rotation = LightRotation::per_pixel;
+  const LightSamples s = make_light_samples(unit_square(), request);
+  EXPECT_EQ(s.move, PixelMove::wrap);
+  std::vector<Vec4f> storage;
+  Moments m;
+  for (std::size_t pixel = 0; pixel < 4096; ++pixel)
+    for (const Vec4f& p : s.of_pixel(pixel, storage)) {
+      EXPECT_TRUE(p.x > -1e-6f && p.x < 1.000001f && p.y > -1e-6f && p.y < 1.000001f) << p.x << ' ' << p.y;
+      m.add(p, 1 / (13 * 4096.0));
+    }
+  EXPECT_NEAR(m.mean, 0.5, 0.002);
+  EXPECT_NEAR(m.square, 1.0 / 3, 0.002);
+}
+
+TEST(LightRotation, TurnsASphereAboutItsVerticalAxis) {
+  Light light;
+  light.kind = LightKind::sphere, light.radius = 2, light.center = {1, 2, 3};
+  LightSampleRequest request{.width = 8, .height = 8};
+  request.rotation = LightRotation::per_pixel;
+  const LightSamples s = make_light_samples(light, request);
+  EXPECT_EQ(s.move, PixelMove::turn);
+  double mean_cosine = 0;
+  for (std::size_t pixel = 0; pixel < 4096; ++pixel) {
+    const Vec2f drawn = s.draw(pixel);
+    EXPECT_NEAR(drawn.x * drawn.x + drawn.y * drawn.y, 1, 1e-6);
+    mean_cosine += double(drawn.x) / 4096;
+    const Vec4f p = s.at(5, drawn), c = s.points[5];
+    EXPECT_EQ(p.y, c.y);
+    EXPECT_NEAR(length(p.xyz() - light.center), length(c.xyz() - light.center), 1e-5);
+  }
+  EXPECT_NEAR(mean_cosine, 0, 0.03);
+}
+
+TEST(LightRotation, IsNotForLightsWithoutSymmetry) {
+  Light light = unit_square();
+  EXPECT_FALSE(why_not_rotated(light));
+  light.kind = LightKind::volume;
+  EXPECT_TRUE(why_not_rotated(light));
+  EXPECT_TRUE(why_not_jittered(light));
+  light.kind = LightKind::textured_rectangle;
+  EXPECT_TRUE(why_not_rotated(light));
+  EXPECT_FALSE(why_not_jittered(light));
+}
+
+// 64 sets of 16 samples fill the light far better than one set does.
+TEST(LightJitter, SetsFillTheLightTogether) {
+  for (const LightPattern pattern : {LightPattern::regular, LightPattern::jittered, LightPattern::halton})
+    for (const int count : {0, 16}) {
+      std::set<std::pair<float, float>> seen;
+      Moments m;
+      for (int set = 0; set < 64; ++set) {
+        LightSampleRequest request{.width = 4, .height = 4, .count = count, .pattern = pattern};
+        request.set = set;
+        const LightSamples s = make_light_samples(unit_square(), request);
+        for (const Vec4f& p : s.points) {
+          EXPECT_TRUE(p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1);
+          seen.insert({p.x, p.y});
+          m.add(p, 1 / 1024.0);
+        }
+      }
+      EXPECT_EQ(seen.size(), 1024U);
+      EXPECT_NEAR(m.mean, 0.5, 0.004);
+      EXPECT_NEAR(m.square, 1.0 / 3, 0.004);
+    }
+}
+
+TEST(LightJitter, SetsOfARegularGridAreTheGridMovedAndTheFirstIsItself) {
+  LightSampleRequest request{.width = 4, .height = 4};
+  const LightSamples plain = make_light_samples(unit_square(), request);
+  EXPECT_EQ(plain.grid_shift, (Vec2f{0, 0}));
+  request.set = 5;
+  const LightSamples s = make_light_samples(unit_square(), request);
+  EXPECT_EQ(s.width, 4);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_NEAR(s.points[i].x - plain.points[i].x, s.grid_shift.x / 4, 1e-6f);
+    EXPECT_NEAR(s.points[i].y - plain.points[i].y, s.grid_shift.y / 4, 1e-6f);
+  }
+}
+
 // 1,024 scrambled Sobol points put exactly one in each cell of any elementary 32 x 32 partition; integrating
 // a half-plane must beat random sampling by far.
 TEST(ReferenceSamples, AreStratifiedAndUnbiased) {

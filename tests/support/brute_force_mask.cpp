@@ -16,8 +16,8 @@ void apply(HorizonJudgement& h, double margin) {
     h.distance = blocks ? std::max(h.distance, std::abs(margin)) : std::min(h.distance, std::abs(margin));
 }
 
-Vec4d light_point(const LightSamples& samples, int i) {
-  const Vec4f p = samples.points[static_cast<std::size_t>(i)];
+Vec4d light_point(const LightSamples& samples, int i, std::size_t pixel) {
+  const Vec4f p = samples.at(static_cast<std::size_t>(i), samples.draw(pixel));
   return {p.x, p.y, p.z, p.w};
 }
 
@@ -41,7 +41,7 @@ HorizonJudgement judge_horizon(const Light& light, Vec3d position, Vec3d normal,
 
 Tie explain_bit(const BruteForce& scene, const Light& light, const LightSamples& samples,
                 const ViewSamplesHost& view, std::size_t pixel, int light_sample, bool skip_own) {
-  const Vec4d point = light_point(samples, light_sample);
+  const Vec4d point = light_point(samples, light_sample, pixel);
   const Vec3d position(view.position[pixel].xyz()), normal(view.geometric_normal[pixel].xyz());
   const HorizonJudgement horizon = judge_horizon(light, position, normal, point);
   if (horizon.blocked && horizon.distance > scene.tie_tolerance()) return {true, horizon.distance};
@@ -65,7 +65,7 @@ std::vector<uint32_t> brute_force_mask(const BruteForce& scene, const Light& lig
       const Vec3d position(view.position[pixel].xyz()), normal(view.geometric_normal[pixel].xyz());
       const Vec3d origin = skip_own ? position : Vec3d(view.origin[pixel].xyz());
       for (int i = 0; i < samples.count(); ++i) {
-        const Vec4d point = light_point(samples, i);
+        const Vec4d point = light_point(samples, i, pixel);
         if (judge_horizon(light, position, normal, point).blocked ||
             scene.blocked(origin, point, skip_own ? view.triangle[pixel] : no_triangle))
           mask[pixel * words + static_cast<std::size_t>(i) / 32] |= 1U << (i % 32);

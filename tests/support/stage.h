@@ -84,6 +84,17 @@ class Stage {
     r.evaluated = technique.evaluated_mask();
     return r;
   }
+  // One frame of a technique that wants its output on the host.
+  Rendered render_on_host(Technique& technique) {
+    Rendered r;
+    r.visibility.resize(pixels());
+    r.mask.resize(pixels() * mask_words());
+    RenderInput in;
+    in.scene_case = &the_case, in.view_samples = &view, in.host = {r.visibility, r.mask};
+    technique.render(in, passes);
+    r.passes = passes.take_times();
+    return r;
+  }
   Rendered render(const TechniqueInfo& info, const ParamValues& given) {
     return render(*built(info, given), info.sampled);
   }

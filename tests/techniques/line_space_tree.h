@@ -1,6 +1,8 @@
 // A line space tree on the host, and its parameters: what the room's tests share.
 #pragma once
+#include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "techniques/line_space/host_tracer.h"
@@ -24,7 +26,8 @@ struct Tree {
       : grid(make_grid(geometry, casters, params)),
         table(grid.branching),
         pools(build_tree(geometry, casters, grid, table, params.memory_limit_mib)),
-        tracer(pools, grid) {}
+        start(params.start),
+        tracer(pools, grid, params.start) {}
   Tree(const Geometry& geometry, const line_space::Params& params)
       : Tree(geometry, select_casters(geometry, 0), params) {}
   Tree(const Tree&) = delete;
@@ -33,9 +36,18 @@ struct Tree {
     return double(grid.lo[axis]) + i * double(grid.size[axis]) / grid.fine_cells();
   }
 
+  // First and last fine cell, along one axis, of what is skipped for a segment that begins in `cell`.
+  std::pair<double, double> skipped(double cell) const {
+    if (start == line_space::Params::Start::neighbours) return {cell - 1, cell + 1};
+    if (start != line_space::Params::Start::coarse || grid.depth < 3) return {cell, cell};
+    const double size = double(grid.fine_cells() / grid.branching), first = std::floor(cell / size) * size;
+    return {first, first + size - 1};
+  }
+
   Grid grid;
   ShaftTable table;
   Pools pools;
+  line_space::Params::Start start;
   HostTracer tracer;
 };
 

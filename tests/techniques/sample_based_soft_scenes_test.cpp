@@ -3,6 +3,8 @@
 // visibility errs the less the larger the table is.
 #include <gtest/gtest.h>
 
+#include "techniques/gears/gears.h"
+#include "techniques/ray_tracing/ray_tracing.h"
 #include "techniques/sample_based_soft/sample_based_soft.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/host_view.h"
@@ -38,7 +40,20 @@ INSTANTIATE_TEST_SUITE_P(Each, SampleBasedSoftScene,
                          ::testing::Combine(::testing::Values("bunny", "torus_knot", "bird_nest", "columns"),
                                             ::testing::Values("rectangle", "sphere", "volume")));
 
-TEST_P(SampleBasedSoftScene, DiffersFromEmbreeInTiesOnly) {
+void expect_ties(Stage& stage, const testing::BruteForce& oracle, const std::vector<uint32_t>& mask,
+                 const std::string& what) {
+  const MatchedReference& truth = stage.reference(ReferenceOrigin::offset);
+  const auto d = testing::explain_differences(oracle, stage.frame.light, stage.light_samples,
+                                              stage.view.host(), mask, truth.mask, truth.evaluated);
+  EXPECT_GT(d.bits, 10'000'000U);
+  EXPECT_LE(static_cast<double>(d.differing), 1e-5 * static_cast<double>(d.bits)) << what;
+  EXPECT_EQ(d.unexplained, 0U) << what << ": the worst is " << d.worst << " tolerances from a tie";
+  std::printf("%s: %llu of %llu bits differ; the worst is %.3g tolerances from a tie\n", what.c_str(),
+              static_cast<unsigned long long>(d.differing), static_cast<unsigned long long>(d.bits), d.worst);
+}
+
+// sample_based_soft, gears and ray_tracing alike.
+TEST_P(SampleBasedSoftScene, DiffersFromEmbreeInTiesOnlyAsGearsAndRayTracingDo) {
   const auto& [scene, kind] = GetParam();
   Frame frame = Scene::load(scene, {"configs/scenes"}).frame(0, "", "", -1);
   frame.light = light_of(scene, kind);
@@ -47,17 +62,16 @@ TEST_P(SampleBasedSoftScene, DiffersFromEmbreeInTiesOnly) {
   const int size = small ? 256 : 512;
   Stage stage(std::move(frame), size, size);
   stage.light_samples = make_light_samples(stage.frame.light, {16, 16});
-  const MatchedReference& truth = stage.reference(ReferenceOrigin::offset);
   const testing::BruteForce oracle(stage.frame.geometry);
-  const Rendered r = stage.render(*stage.built(sample_based_soft_technique(), {}), true, false);
-  const auto d = testing::explain_differences(oracle, stage.frame.light, stage.light_samples,
-                                              stage.view.host(), r.mask, truth.mask, truth.evaluated);
-  EXPECT_GT(d.bits, 10'000'000U);
-  EXPECT_LE(static_cast<double>(d.differing), 1e-5 * static_cast<double>(d.bits));
-  EXPECT_EQ(d.unexplained, 0U) << "the worst is " << d.worst << " tolerances from a tie";
-  std::printf("%s, %s: %llu of %llu bits differ; the worst is %.3g tolerances from a tie\n", scene.c_str(),
-              kind.c_str(), static_cast<unsigned long long>(d.differing),
-              static_cast<unsigned long long>(d.bits), d.worst);
+  const auto what = [&](const char* technique) { return scene + ", " + kind + ", " + technique; };
+  expect_ties(stage, oracle, stage.render(*stage.built(sample_based_soft_technique(), {}), true, false).mask,
+              what("sample_based_soft"));
+  expect_ties(stage, oracle, stage.render_on_host(*stage.built(ray_tracing_technique(), {})).mask,
+              what("ray_tracing"));
+  // The other rectangles are in gears_scenes_test.cpp.
+  if (kind != "rectangle" || scene == "columns")
+    expect_ties(stage, oracle, stage.render(*stage.built(gears_technique(), {}), true, false).mask,
+                what("gears"));
 }
 
 // The torus knot with a tenth of its triangles: 1200 and the ground.

@@ -291,6 +291,7 @@
   P.show_details = (p) => {
     const box = dialog();
     const metrics = numbers(p.metrics, "metrics."),
+      own = numbers(p.metrics_own, "metrics."),
       matched = numbers(p.metrics_matched, "metrics_matched.");
     const speed = P.speed_up(p);
     box.replaceChildren(
@@ -327,6 +328,9 @@
         ),
         timing(p),
         metrics.length ? block("Error against the converged reference", pairs(metrics), zones(p)) : null,
+        own.length
+          ? block("Error against the light as the technique takes it", pairs(own), zones({ metrics: p.metrics_own }))
+          : null,
         matched.length ? block("Difference from Embree at the same light samples", pairs(matched)) : null,
         Object.keys(p.memory ?? {}).length
           ? block(

@@ -140,6 +140,8 @@ const P = { data: window.penumbra_data, styles: window.penumbra_styles };
     "mask_size",
     "light_samples",
     "light_pattern",
+    "light_rotation",
+    "accumulate",
     "light_size",
     "light",
     "camera",

@@ -8,6 +8,8 @@
     "mask_size",
     "light_samples",
     "light_pattern",
+    "light_rotation",
+    "accumulate",
     "frame",
     "seed",
   ];

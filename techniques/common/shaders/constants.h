@@ -32,6 +32,7 @@ struct PrefixScanConstants {
 struct MaskResolveConstants {
   PENUMBRA_ADDRESS(Uints) walked, masks;  // the same where PACKED
   PENUMBRA_ADDRESS(Floats) visibility, weights;
+  PENUMBRA_ADDRESS(Uints) places;  // per light sample: its bit in the walked mask, where it is clustered
   PENUMBRA_UINT pixels, mask_words;
 };
 

@@ -6,11 +6,22 @@ layout(constant_id = 2) const int ROWS = 16;
 layout(constant_id = 3) const int PITCH = 16;
 layout(constant_id = 4) const int WORDS = 8;
 layout(constant_id = 14) const int BAND_WORDS = 1;   // words of the mask that one turn of the row loop fills
+layout(constant_id = 21) const bool ABOVE_HORIZON = false;  // counts leave out what is below the horizon
+layout(constant_id = 20) const uint MOVE = 0;        // 1: each view sample's light samples are moved by its `shift`
 const int ROWS_PER_WORD = PITCH >= 32 ? 1 : 32 / PITCH;
 const int BAND_ROWS = PITCH > 32 ? BAND_WORDS / 2 : BAND_WORDS * ROWS_PER_WORD;
 const float far_away = 1e30;
 
+#include "samples/shaders/light_rotation.h"
 vec3 p;                     // view sample
+vec2 shift;                 // columns and rows, at most half of one to each side: light sample (i, j) is at (i, j) + shift
+float reach_of_shift() { return MOVE != 0u ? 0.5 : 0.0; }
+void begin_shift(uint pixel, FrameConstants f) {
+  uint seed = uint(f.first.w);
+  shift = MOVE != 0u ? vec2(rotation_unit(pixel, seed, 0u), rotation_unit(pixel, seed, 1u)) - 0.5 : vec2(0.0);
+}
+// The view sample as whole columns and rows see it.
+vec2 unshifted() { return MOVE != 0u ? p.xy - shift : p.xy; }
 vec3 group_lo, group_hi;    // box of the group's view samples
 uint mask[WORDS];
 // Columns in which some view sample of the group still sees a light sample, per band of rows. Bands, since the question
@@ -19,6 +30,14 @@ const int WORDS_PER_OPEN_BAND = (WORDS + 7) / 8, OPEN_BANDS = (WORDS + WORDS_PER
 uint open_[OPEN_BANDS];
 vec4 open_rect;             // their columns (x, y) and rows (z, w)
 float pad;
+
+// Blocked from the start: no part in counts where ABOVE_HORIZON.
+uint below_horizon[WORDS];
+uint counted(uint bits, int word) {
+  if (ABOVE_HORIZON)
+    [[unroll]] for (int q = 0; q < WORDS; q++) bits &= q == word ? ~below_horizon[q] : 0xffffffffu;
+  return uint(bitCount(bits));
+}
 
 // Bits below n, 0 <= n <= 32.
 uint below(int n) { return PITCH < 32 ? (1u << n) - 1u : (n >= 32 ? 0xffffffffu : (1u << n) - 1u); }
@@ -38,6 +57,7 @@ uint span(float lo, float hi, int part) {
 void block_horizon(vec3 P, vec3 n, FrameConstants f) {
   bool behind = dot(f.light.row_z.xyz, P - f.light.origin.xyz) <= 0.0;
   float h = dot(n, f.first.xyz - P), hx = dot(n, f.step_u.xyz), hy = dot(n, f.step_v.xyz);
+  if (MOVE != 0u) h += hx * shift.x + hy * shift.y;
   float inverse = -1.0 / (hx == 0.0 ? 1.0 : hx);
   [[unroll]] for (int q = 0; q < WORDS; q++) {
     uint w = 0u;
@@ -115,7 +135,7 @@ bool touches(vec3 lo, vec3 hi, out uint rect) {
   vec2 nearer_lo = lo.xy * s0 - group_hi.xy * t0, nearer_hi = hi.xy * s0 - group_lo.xy * t0;
   vec2 further_lo = (lo.xy - group_hi.xy - 2.0 * pad) * s1 + group_hi.xy;
   vec2 further_hi = (hi.xy - group_lo.xy + 2.0 * pad) * s1 + group_lo.xy;
-  const float slack = 0.01;
+  float slack = 0.01 + reach_of_shift();
   float i0 = ceil(upper(lower(nearer_lo.x, further_lo.x) - slack, open_rect.x));
   float i1 = floor(lower(upper(nearer_hi.x, further_hi.x) + slack, open_rect.y));
   float j0 = ceil(upper(lower(nearer_lo.y, further_lo.y) - slack, open_rect.z));
@@ -133,7 +153,8 @@ bool separates(vec3 a, vec3 b, vec3 c) {
   vec3 n = edge_normal(b - a, c - a);
   vec3 lo = n * (group_lo - a - pad), hi = n * (group_hi - a + pad);
   float below_ = dot(lower(lo, hi), vec3(1.0)), above = dot(upper(lo, hi), vec3(1.0));
-  vec3 l0 = n * (vec3(0.0) - a - pad), l1 = n * (vec3(float(COLUMNS - 1), float(ROWS - 1), 0.0) - a + pad);
+  vec3 wider = vec3(reach_of_shift(), reach_of_shift(), 0.0);
+  vec3 l0 = n * (-wider - a - pad), l1 = n * (vec3(float(COLUMNS - 1), float(ROWS - 1), 0.0) + wider - a + pad);
   float light_below = dot(lower(l0, l1), vec3(1.0)), light_above = dot(upper(l0, l1), vec3(1.0));
   float error = 1e-5 * (abs(below_) + abs(above) + abs(light_below) + abs(light_above));
   return !((below_ > error && light_below > error) || (above < -error && light_above < -error));
@@ -161,7 +182,8 @@ Bounds bounds_of(vec3 a, vec3 b, vec3 c, bool crossing) {
   // Edge value at light sample (i, j): nx (i - p.x) + ny (j - p.y) + nz p.z. Solved for i; a tiny nx keeps its sign.
   uvec3 sign_ = floatBitsToUint(nx) & 0x80000000u;
   vec3 inverse = -1.0 / mix(nx, uintBitsToFloat(sign_ | floatBitsToUint(least)), lessThan(abs(nx), vec3(least)));
-  vec3 slope = ny * inverse, offset = (nz * p.z) * inverse - slope * p.y + p.x;
+  vec2 at = unshifted();
+  vec3 slope = ny * inverse, offset = (nz * p.z) * inverse - slope * at.y + at.x;
   bvec3 upper_bound = notEqual(sign_ ^ side, uvec3(0u));
   Bounds e;
   e.lo_slope = mix(slope, vec3(0.0), upper_bound);
@@ -176,7 +198,7 @@ Bounds bounds_of(vec3 a, vec3 b, vec3 c, bool crossing) {
     vec3 n = edge_normal(b - a, c - a);
     uint s = floatBitsToUint(n.x) & 0x80000000u;
     float inv = -1.0 / (abs(n.x) < least ? uintBitsToFloat(s | floatBitsToUint(least)) : n.x);
-    float m = n.y * inv, o = (n.z * p.z - dot(n, a)) * inv - m * p.y + p.x;
+    float m = n.y * inv, o = (n.z * p.z - dot(n, a)) * inv - m * at.y + at.x;
     bool is_upper = (s ^ side) != 0u;
     e.lo4_slope = is_upper ? 0.0 : m;
     e.lo4_offset = is_upper ? -far_away : o;
@@ -238,7 +260,7 @@ uint fill_rows(Bounds e, uint rect, bool some, bool crossing, bool counting) {
         int row = PITCH > 32 ? band * BAND_ROWS + k / 2 : band * BAND_ROWS + k;
         w[k] = row < j0 || row > j1 ? 0u : w[k];
       }
-      if (counting) found += uint(bitCount(w[k]));
+      if (counting) found += counted(w[k], band * BAND_WORDS + k);
     }
     // Constant places and a comparison, not mask[band]: a place that varies costs a scalar load and store per lane.
     [[unroll]] for (int q = 0; q < WORDS; q++) mask[q] |= band == q / BAND_WORDS ? w[q % BAND_WORDS] : 0u;

@@ -1,6 +1,8 @@
 // From the masks as walked to the masks as handed out, and their visibility. Bits that no light sample owns become 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 #define PENUMBRA_COMPUTE
 #include "gpu/shaders/common.glsl"
 #include "techniques/common/shaders/buffers.glsl"
@@ -13,6 +15,7 @@ layout(constant_id = 3) const uint PITCH = 16;         // bits that a row takes 
 layout(constant_id = 4) const uint WORDS = 8;          // of the walked mask
 layout(constant_id = 5) const bool PACKED = true;      // both masks have one layout
 layout(constant_id = 6) const bool WEIGHTED = false;
+layout(constant_id = 7) const bool CLUSTERED = false;  // light sample i is bit places[i] of the walked mask
 
 layout(push_constant) uniform Push { MaskResolveConstants pc; };
 
@@ -41,10 +44,29 @@ void unpack(uint pixel) {
   if (fill > 0u) pc.masks.at[pixel * pc.mask_words + word] = current;
 }
 
+// Places are the same for all pixels: a subgroup loads as many as it has lanes at once.
+void gather(uint pixel, bool real) {
+  uint walked[WORDS];
+  for (uint k = 0u; k < WORDS; k++) walked[k] = pc.walked.at[pixel * WORDS + k];
+  for (uint k = 0u; k < pc.mask_words; k++) {
+    uint w = 0u;
+    for (uint b = 0u; b < 32u; b += gl_SubgroupSize) {
+      uint mine = pc.places.at[min(32u * k + b + gl_SubgroupInvocationID, SAMPLES - 1u)];
+      for (uint l = 0u; l < min(gl_SubgroupSize, 32u); l++) {
+        uint place = subgroupShuffle(mine, l);
+        w |= (walked[place >> 5u] >> (place & 31u) & 1u) << (b + l);
+      }
+    }
+    if (real) pc.masks.at[pixel * pc.mask_words + k] = w & owned(k);
+  }
+}
+
 void main() {
   uint pixel = linear_group() * LANES + gl_LocalInvocationID.x;
+  // All lanes of a subgroup go on where they shuffle.
+  if (CLUSTERED) gather(min(pixel, pc.pixels - 1u), pixel < pc.pixels);
   if (pixel >= pc.pixels) return;
-  if (!PACKED) unpack(pixel);
+  if (!PACKED && !CLUSTERED) unpack(pixel);
   uint blocked = 0u;
   float seen = 0.0;
   for (uint k = 0u; k < pc.mask_words; k++) {

@@ -18,7 +18,8 @@ namespace penumbra::gears {
 struct FrameConstants {
   LightBasis light;
   PENUMBRA_VEC4 light_lo, light_hi;     // box of all light samples, working space; w = 0: of directions
-  PENUMBRA_VEC4 first, step_u, step_v;  // regular grid, world: sample (i, j) = first + i step_u + j step_v
+  PENUMBRA_VEC4 first, step_u, step_v;  // regular grid, world: sample (i, j) = first + i step_u + j step_v;
+                                        // first.w: seed of the per-pixel rotation
   PENUMBRA_VEC4 camera_x, camera_y,
       camera_z;              // grid camera C: rows for working - camera_eye; its corners of the light
   PENUMBRA_VEC4 camera_eye;  // w = 1: perspective, 0: parallel

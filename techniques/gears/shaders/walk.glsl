@@ -52,6 +52,9 @@ void begin_group(uint g, uint lanes, FrameConstants f, Uints slots, Vec4s sample
   group_lo = lowest(p);
   group_hi = highest(p);
   begin_mask();
+#ifdef GRID
+  begin_shift(pixel, f);
+#endif
 #ifndef GRID
   sample_origin = f.light.origin.xyz;
   begin_light(f, samples);

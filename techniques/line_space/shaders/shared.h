@@ -20,6 +20,8 @@ using vec4 = Vec4f;
 // Entries of the tree pool that are no node: what is at least occupied_leaf is not subdivided.
 SHARED_CONSTANT occupied_leaf = 0xfffffffeu;  // holds geometry, below the finest subdivided nodes
 SHARED_CONSTANT empty_leaf = 0xffffffffu;
+// What a walk skips where it begins; see params.cpp.
+SHARED_CONSTANT start_node = 0u, start_neighbours = 1u, start_coarse = 2u;
 SHARED_CONSTANT group_lanes = 64u;
 SHARED_CONSTANT tile_side = 8u;  // a group's pixels are a square
 

@@ -6,6 +6,7 @@
 #include "techniques/common/shaders/light_emission.glsl"
 #include "techniques/line_space/shaders/words.glsl"
 layout(constant_id = 1) const uint DEPTH = 3;
+layout(constant_id = 2) const uint START = start_node;
 layout(push_constant, scalar) uniform Push { TracePush push; };
 
 #ifdef IMAGES

@@ -1,5 +1,5 @@
 // Algorithm 1 [Keul2017, sec. 4.1], one node at a time and without a stack. Also compiles as C++, as members of a struct
-// (include after glsl.h) that has N, DEPTH, and the pools as tree_entry(place) and line_space_word(place).
+// (include after glsl.h) that has N, DEPTH, START, and the pools as tree_entry(place) and line_space_word(place).
 //
 // All in fine cells: the grid of N^(DEPTH-1) cells a side of the finest nodes that can be subdivided. A walk is at `t` on
 // its line, in fine cell `cell`; the nodes of levels 0 ... `level` around that cell have non-empty shafts for the line.
@@ -118,6 +118,18 @@ bool same_node(float a, float b, uint level) {
   return node_place(a, share) == node_place(b, share);
 }
 
+bool near_cells(float a, float b) { return abs(a - b) <= 1.0f; }
+
+// Nodes that say nothing of a segment that starts in cell `start` [Keul2017, sec. 4.1].
+bool skipped(vec3 cell, vec3 start) {
+  if (start.x < 0.0f) return false;
+  if (START == start_neighbours)
+    return near_cells(cell.x, start.x) && near_cells(cell.y, start.y) && near_cells(cell.z, start.z);
+  if (START == start_coarse && DEPTH > 2u)
+    return same_node(cell.x, start.x, 1u) && same_node(cell.y, start.y, 1u) && same_node(cell.z, start.z, 1u);
+  return same(cell, start);
+}
+
 bool within(float p, float hi) { return p >= 0.0f && p <= hi; }
 
 Walk begin_walk(vec3 o, vec3 d, float last) {
@@ -195,7 +207,7 @@ Walk step_walk(Walk w) {
   bool occupied = node < occupied_leaf;
   if (occupied) occupied = shaft_occupied(node, w.line, s, lo, n * share);
   bool finest = w.level + 2u == DEPTH;
-  if (occupied && finest && !same(w.cell, w.start)) {  // deep enough, and not the node where the segment starts
+  if (occupied && finest && !skipped(w.cell, w.start)) {  // deep enough, and not where the segment starts
     w.done = w.blocked = true;
     return w;
   }

@@ -96,6 +96,19 @@ struct TableConstants {             // build_table.comp
   float radius;
 };
 
+struct ShadeConstants {                              // bend_normals.comp, shade_coherently.comp
+  PENUMBRA_ADDRESS(Floats) positions, barycentrics;  // barycentrics: 2 per pixel
+  PENUMBRA_ADDRESS(Uints) indices, triangle;         // triangle: per pixel
+  PENUMBRA_ADDRESS(Uints)
+  first_faces, faces, corner;  // corners (places in indices) at each welded vertex; a vertex's welded one
+  PENUMBRA_ADDRESS(Vec4s) position, normal, shading_normal;
+  PENUMBRA_ADDRESS(Floats) bent;     // per welded vertex: least and largest dot(l, face normal)
+  PENUMBRA_ADDRESS(Floats) cosines;  // out: per pixel
+  float light[3];                    // the light's centre, world
+  float weight;                      // c
+  PENUMBRA_UINT count, unused;       // of welded vertices, or pixels
+};
+
 #undef PENUMBRA_UINT
 #undef PENUMBRA_ADDRESS
 #ifdef __cplusplus
@@ -104,6 +117,7 @@ static_assert(sizeof(CastersConstants) <= 128 && sizeof(CastersConstants) % 8 ==
 static_assert(sizeof(CoverConstants) <= 128 && sizeof(CoverConstants) % 8 == 0);
 static_assert(sizeof(SplitConstants) <= 128 && sizeof(SplitConstants) % 8 == 0);
 static_assert(sizeof(WalkConstants) <= 128 && sizeof(WalkConstants) % 8 == 0);
+static_assert(sizeof(ShadeConstants) <= 128 && sizeof(ShadeConstants) % 8 == 0);
 static_assert(sizeof(TableConstants) <= 128 && sizeof(TableConstants) % 8 == 0);
 }  // namespace
 #endif

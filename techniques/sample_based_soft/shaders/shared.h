@@ -18,7 +18,11 @@ namespace penumbra::sample_based_soft {
 struct FrameConstants {
   LightBasis light;
   PENUMBRA_VEC4 light_lo, light_hi;     // box of all light samples, working space
-  PENUMBRA_VEC4 first, step_u, step_v;  // regular grid, world: sample (i, j) = first + i step_u + j step_v
+  PENUMBRA_VEC4 first, step_u, step_v;  // regular grid, world: sample (i, j) = first + i step_u + j step_v;
+                                        // first.w: seed of the per-pixel rotation. Other sets that pixels
+                                        // move: along step_u, step_v (w: their lengths in working space), or
+                                        // about the axis first.xyz of working space (step_u.w: 1, or -1 where
+                                        // that space is mirrored)
   PENUMBRA_VEC4 cone;                   // spot light: axis, cosine of the half angle; w = -2: none
   PENUMBRA_VEC4 apex;                   // the light's centre, world
   PENUMBRA_VEC4 front;                  // w = 1: shines only to the side that xyz points to

@@ -23,6 +23,10 @@ layout(constant_id = 16) const bool HARD = false;
 layout(constant_id = 17) const bool WORK = false;        // groups come from a list of work
 layout(constant_id = 18) const bool CULL_PLANES = true;  // leave out triangles whose plane has light and group on one side
 layout(constant_id = 19) const uint MASK_WORDS = 8;      // words of a whole mask
+// Transparent triangles: visibility is the share of light samples above the horizon, times 1 - OPACITY c for every
+// triangle that covers the share c of them. ABOVE_HORIZON (in the masks) is then set, and no pair is skipped.
+layout(constant_id = 22) const float OPACITY = 1.0;
+layout(constant_id = 23) const uint ALL_SAMPLES = 1;
 #include "techniques/common/shaders/subgroup.glsl"
 #include "techniques/common/shaders/texels.glsl"
 #include "techniques/common/shaders/edge_half_spaces.glsl"
@@ -39,7 +43,7 @@ layout(push_constant) uniform Push { WalkConstants pc; };
 uint turns = 0u, tests = 0u, pairs = 0u, necessary = 0u;
 #ifdef GRID
 #include "techniques/common/shaders/mask_grid.glsl"
-vec3 sample_at(int i) { return vec3(float(i % PITCH), float(i / PITCH), 0.0); }
+vec3 sample_at(int i) { return vec3(vec2(float(i % PITCH), float(i / PITCH)) + shift, 0.0); }
 #else
 #include "techniques/sample_based_soft/shaders/mask_any.glsl"
 #endif
@@ -47,6 +51,7 @@ uint pixel;
 bool idle;
 vec3 target;          // HARD: the light sample that stands for all
 bool hidden_ = false;
+float above, through;   // ABOVE_HORIZON: light samples above the horizon, and the visibility so far
 #ifdef GRID
 vec3 light_middle, light_extent;
 #endif
@@ -82,8 +87,11 @@ void begin_group(uint g, FrameConstants f) {
   light_middle = 0.5 * (f.light_lo.xyz + f.light_hi.xyz);
   light_extent = 0.5 * (f.light_hi.xyz - f.light_lo.xyz) + 2.0 * f.pad;
   begin_mask();
-#ifndef GRID
+#ifdef GRID
+  begin_shift(pixel, f);
+#else
   begin_light(f, pc.first_word);
+  begin_move(pixel, f);
 #endif
 }
 
@@ -104,6 +112,23 @@ void store_visibility() {
   if (!idle) pc.visibility.at[pixel] = float(int(SAMPLES_SEEN) - blocked) / float(SAMPLES_SEEN);
 }
 
+// Every pair of view sample and triangle counts, whether or not its light samples are hidden already.
+bool skips_nothing() { return COUNTING == 2u || ABOVE_HORIZON; }
+
+// After block_horizon(), before load_mask().
+void begin_through() {
+  int blocked = 0;
+  [[unroll]] for (int q = 0; q < WORDS; q++) {
+    below_horizon[q] = mask[q];
+    blocked += bitCount(mask[q]);
+  }
+  above = float(32 * WORDS - blocked);
+  through = BEGIN ? above / float(ALL_SAMPLES) : pc.visibility.at[pixel];
+}
+void store_through() {
+  if (ABOVE_HORIZON && !idle) pc.visibility.at[pixel] = through;
+}
+
 bool is_full() {
   uint w = 0xffffffffu;
   [[unroll]] for (int q = 0; q < WORDS; q++) w &= mask[q];
@@ -113,7 +138,7 @@ bool is_full() {
 // Every view sample of the group sees no light sample any more.
 bool all_blocked() {
   bool blocked = is_full() || (HARD && hidden_);
-  return ballot(!blocked) == 0u && COUNTING != 2u;
+  return ballot(!blocked) == 0u && !skips_nothing();
 }
 
 // The first light sample that is above the horizon.
@@ -169,7 +194,7 @@ void rasterise_slots(uint slot, bool wanted, bool listed) {
     vec3 A = vec3(subgroupShuffle(a.x, l), subgroupShuffle(a.y, l), subgroupShuffle(a.z, l)) - p;
     vec3 B = vec3(subgroupShuffle(b.x, l), subgroupShuffle(b.y, l), subgroupShuffle(b.z, l)) - p;
     vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
-    bool open_ = COUNTING == 2u || !is_full();
+    bool open_ = skips_nothing() || !is_full();
     bool may = may_hide(A, B, C) && open_;
     bool any_may = ballot(may) != 0u;
     kept |= any_may ? 1u << l : 0u;
@@ -190,7 +215,8 @@ void rasterise_slots(uint slot, bool wanted, bool listed) {
       hidden_ = hidden_ || hides;
       found = hides ? 1u : 0u;
     } else {
-      found = rasterise(A, B, C, subgroupShuffle(rect, l), listed, COUNTING != 0u);
+      found = rasterise(A, B, C, subgroupShuffle(rect, l), listed, COUNTING != 0u || ABOVE_HORIZON);
+      if (ABOVE_HORIZON) through *= above > 0.0 ? 1.0 - OPACITY * float(found) / above : 0.0;
     }
     turns++;
     if (COUNTING != 0u && !idle) {
@@ -241,13 +267,13 @@ uint walk(uint list, uint done) {
             next = stop && left != 0u ? done + uint(findLSB(left)) : next;
             left = stop || full ? 0u : left;
           } while (left != 0u);
-          if (COUNTING != 2u) update_open();
+          if (!skips_nothing()) update_open();
         }
         done = next;
       } else {
         rasterise_slots(caster, wanted, false);
         full = all_blocked();
-        if (COUNTING != 2u && (done & 63u) == 0u) update_open();
+        if (!skips_nothing() && (done & 63u) == 0u) update_open();
         done += SG;
       }
       turns++;
@@ -289,13 +315,17 @@ void main() {
   uint g = RESUMED ? pc.resume.at[pc.read_list * pc.capacity + n] : WORK ? pc.work.at[pc.first_group + n] : pc.first_group + n;
   FrameConstants f = frame_constants();
   begin_group(g, f);
+  if (ABOVE_HORIZON) {
+    block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
+    begin_through();
+  }
   if (!BEGIN) load_mask();
   if (HARD) hidden_ = !BEGIN && is_full();
-  if (BEGIN || HARD) block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
+  if ((BEGIN && !ABOVE_HORIZON) || HARD) block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
   if (HARD) choose_target();
   if (LIST) do_list();
   if (WALK) {
-    if (!BEGIN && !HARD && COUNTING != 2u) update_open();
+    if (!BEGIN && !HARD && !skips_nothing()) update_open();
     uint next = 0xffffffffu;
     if (!all_blocked()) next = walk(pc.group_lists.at[g], RESUMED ? pc.resume.at[2u * pc.capacity + g] : 0u);
     if (next != 0xffffffffu && gl_SubgroupInvocationID == 0u) {
@@ -307,5 +337,6 @@ void main() {
     [[unroll]] for (int q = 0; q < WORDS; q++) mask[q] = hidden_ ? 0xffffffffu : mask[q];
   store_mask();
   store_visibility();
+  store_through();
   add_statistics();
 }
