@@ -72,7 +72,7 @@ void CasterPass::cast(const Casters& casters, const Fitter& fitter, const Sample
   pc.crowded = crowded_.address(), pc.items = items_.address(), pc.progress = progress_.address();
   const Kernels& kernels = kernels_[counting];
   cast_all(pc, 0, casters.caster_count(), fitter, kernels, passes);
-  if (casters.caster_count() == 0) read(passes, "cast_triangles");
+  if (casters.caster_count() == 0 || !fitter.any_used()) read(passes, "cast_triangles");
   const uint32_t inner = progress_read().inner_count, fronts = casters.front_count();
   if (inner == 0 || fronts == 0) return;
   pc.first = casters.triangle_count() - fronts, pc.count = fronts;
@@ -138,6 +138,9 @@ void CasterPass::read(gpu::PassRecorder& passes, const char* pass) {
 
 double CasterPass::count_pairs(const Casters& casters, const Fitter& fitter, const SampleLists& lists,
                                gpu::PassRecorder& passes) {
+  passes.device_pass("read", [&](gpu::Commands& commands) {
+    commands.fill(progress_, 0, offsetof(Progress, pairs), sizeof Progress::pairs);
+  });
   cast(casters, fitter, lists, true, passes);
   read(passes, "read");
   const Progress p = progress_read();

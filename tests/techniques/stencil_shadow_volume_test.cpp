@@ -148,6 +148,38 @@ TEST(StencilShadowVolume, CameraInsideAVolumeIsRightButForZPass) {
   }
 }
 
+// A light behind the camera is nothing special to any variant; a closed mesh around the camera is right with
+// all of them while the light is inside too, and wrong with z-pass when the light is outside, so that its
+// volume holds the camera.
+TEST(StencilShadowVolume, LightBehindTheCameraAndMeshesAroundItAreRightButForZPassInTheirVolume) {
+  struct Situation {
+    const char* name;
+    Light light;
+    bool room, clear;
+  };
+  for (const Situation& s :
+       {Situation{"light behind", point_light({4, 7, 11}), false, true},
+        Situation{"sun behind", directional_light({-0.3f, -0.7f, -1}), false, true},
+        Situation{"room with a lamp", point_light({0.3f, 3, 2.5f}), true, true},
+        Situation{"room under a lamp", point_light({2, 20, 3}), true, false},
+        Situation{"room under a sun", directional_light({-0.4f, -1, -0.3f}), true, false}}) {
+    SCOPED_TRACE(s.name);
+    Frame f = box_on_ground(s.light);
+    if (s.room) testing::add_box(f.geometry, {-6.5f, -0.5f, -6.5f}, {6.5f, 7, 6.5f});
+    Stage stage(std::move(f), 128, 96);
+    ASSERT_EQ(near_plane_is_clear(stage), s.clear);
+    for (const char* extrusion : {"silhouette", "per_triangle"}) {
+      for (const char* variant : {"z_fail", "zp_plus"})
+        stage.expect_only_ties(stage.render(info, params(variant, extrusion)));
+      const Rendered pass = stage.render(info, params("z_pass", extrusion));
+      if (s.clear)
+        stage.expect_only_ties(pass);
+      else
+        EXPECT_GT(stage.share_off(pass), 0.3) << "z-pass must miss the volume that holds the camera";
+    }
+  }
+}
+
 // Its near plane of 1.5 x 1.2 lies partly in the box, partly in the box's volume, partly in the light. In the
 // second case the light is nearly in it.
 class NearPlaneCuts : public ::testing::TestWithParam<Light> {};

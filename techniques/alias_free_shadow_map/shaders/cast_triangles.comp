@@ -49,7 +49,7 @@ void main() {
   barrier();
   place += first_crowded;
   for (uint bits = crowded; bits != 0u; bits &= bits - 1u) {
-    const uint i = uint(findLSB(bits));
+    const uint i = uint(findLSB(bits)) % triangles_per_lane;   // lanes without bits run through once
     const uint t = push.casters.at[push.first + first + i * group_lanes + gl_LocalInvocationIndex];
     push.crowded.at[place++] = uvec2(t, left[i]);
   }
