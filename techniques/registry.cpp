@@ -22,6 +22,7 @@ Registry all_techniques() {
       shadow_map_per_sample_technique(),
       planar_shadow_technique(),
       stencil_shadow_volume_technique(),
+      stencil_shadow_volume_per_sample_technique(),
       alias_free_shadow_map_technique(),
       sample_based_soft_technique(),
       soft_shadow_volume_technique(),

@@ -15,7 +15,7 @@ namespace {
 class AliasFreeShadowMap final : public Technique {
  public:
   explicit AliasFreeShadowMap(const Params& params)
-      : params_(params), fitter_(params), lists_(params), casters_(params) {}
+      : params_(params), fitter_(params), lists_(params), casters_(params), pass_(params) {}
 
   std::optional<std::string> supports(const Case& c) const override {
     const uint32_t lanes = c.device->caps().subgroup_size;
@@ -29,27 +29,29 @@ class AliasFreeShadowMap final : public Technique {
     fitter_.setup(c);
     lists_.setup(c);
     casters_.setup(c);
+    pass_.setup(c);
     resolve_ = gpu::ComputePipeline(*c.device, alias_free_resolve_spv, sizeof(ResolvePush));
   }
 
   void build(const Case& c, gpu::PassRecorder& passes) override {
-    if (c.frame->changes.topology || !built_) casters_.build(c, passes);
-    built_ = true;
+    casters_.build(c, passes);
+    pass_.build(c, casters_);
   }
 
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {
     const LightView& view = fitter_.run(in, passes);
     const auto pixels = static_cast<uint32_t>(in.view_samples->width() * in.view_samples->height());
-    casters_.cull(*in.scene_case, fitter_, passes);
-    lists_.run(pixels, view, fitter_, casters_.away(), casters_.progress(), passes);
-    casters_.run(*in.scene_case, fitter_, lists_, passes);
+    lists_.run(pixels, view, fitter_, casters_.away(), pass_.progress(), passes);
+    pass_.run(casters_, fitter_, lists_, passes);
     resolve(in, passes);
     last_ = in;
   }
 
   Counters counters() override;
 
-  uint64_t structure_bytes() const override { return fitter_.bytes() + lists_.bytes() + casters_.bytes(); }
+  uint64_t structure_bytes() const override {
+    return fitter_.bytes() + lists_.bytes() + casters_.bytes() + pass_.bytes();
+  }
 
  private:
   void resolve(const RenderInput& in, gpu::PassRecorder& passes);
@@ -57,9 +59,9 @@ class AliasFreeShadowMap final : public Technique {
   Params params_;
   Fitter fitter_;
   SampleLists lists_;
-  CasterPass casters_;
+  Casters casters_;
+  CasterPass pass_;
   gpu::ComputePipeline resolve_;
-  bool built_ = false;
   RenderInput last_;
 };
 
@@ -91,7 +93,7 @@ Counters AliasFreeShadowMap::counters() {
   out["view_samples_listed"] = total;
   out["list_bytes"] = static_cast<double>(lists_.list_bytes());
   out["faces"] = lists_.texels() > static_cast<uint32_t>(params_.grid_size * params_.grid_size) ? 6.0 : 1.0;
-  out["pairs_tested"] = casters_.count_pairs(*last_.scene_case, fitter_, lists_, passes);
+  out["pairs_tested"] = pass_.count_pairs(casters_, fitter_, lists_, passes);
   return out;
 }
 

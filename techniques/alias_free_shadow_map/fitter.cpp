@@ -34,7 +34,6 @@ const LightView& Fitter::run(const RenderInput& in, gpu::PassRecorder& passes) {
   light_ = light_point(c.frame->light);
   view_ = begin_view(light_, scene);
   view_.grid_size = static_cast<uint32_t>(params_.grid_size);
-  view_.both_faces = params_.casters == Casters::both;
   std::fill(std::begin(used_), std::end(used_), false);
   gather(in, passes);
   if (params_.fit)

@@ -1,6 +1,9 @@
 // Where the lists lie in the light's view: its direction and windows, fitted to the view samples or to the
 // scene.
 #pragma once
+#include <algorithm>
+#include <iterator>
+
 #include "gpu/pass_recorder.h"
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
@@ -16,6 +19,9 @@ class Fitter {
   // Passes "gather" and "fit_window" (device), "fit" (host).
   const LightView& run(const RenderInput& in, gpu::PassRecorder& passes);
   // Faces that some view sample is seen through.
+  bool any_used() const {
+    return std::any_of(std::begin(used_), std::end(used_), [](bool u) { return u; });
+  }
   bool used(uint32_t face) const { return used_[face]; }
   // Of the last run(), on the device: the view; and per pixel where its shadow segment begins, and its own
   // triangle or not_listed.

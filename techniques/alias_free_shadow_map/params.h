@@ -5,12 +5,12 @@
 
 namespace penumbra::alias_free {
 
-enum class Casters { back, both };
+enum class CasterFaces { back, both };
 
 struct Params {
   int grid_size = 512;
   bool fit = true;
-  Casters casters = Casters::back;
+  CasterFaces casters = CasterFaces::back;
   Origin origin = Origin::automatic;
 };
 

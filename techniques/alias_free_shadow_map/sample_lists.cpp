@@ -16,7 +16,8 @@ void SampleLists::setup(const Case& c) {
   scan_.setup(device, std::min(device.caps().subgroup_size, 32U));
 }
 
-void SampleLists::allocate(gpu::Device& device, uint32_t pixels) {
+void SampleLists::allocate(gpu::PassRecorder& passes, uint32_t pixels) {
+  gpu::Device& device = passes.device();
   const auto ensure = [&](gpu::Buffer& buffer, std::size_t bytes, const char* what) {
     gpu::ensure(buffer, device, bytes, gpu::Memory::device, what);
   };
@@ -27,12 +28,13 @@ void SampleLists::allocate(gpu::Device& device, uint32_t pixels) {
   ensure(slots_, std::size_t{pixels} * 4, "places of the view samples");
   ensure(lists_, std::size_t{pixels} * sizeof(Vec4f), "lists of view samples");
   ensure(blocked_, std::size_t{pixels} * 4, "who is in shadow");
+  list_texels_.ensure(device, passes, pixels, "lists of view samples", VK_FORMAT_R32G32B32A32_UINT);
 }
 
 void SampleLists::run(uint32_t pixels, const LightView& view, const Fitter& fitter, const gpu::Buffer& away,
                       const gpu::Buffer& progress, gpu::PassRecorder& passes) {
   texels_ = view.face_count * view.grid_size * view.grid_size;
-  allocate(passes.device(), pixels);
+  allocate(passes, pixels);
   BinPush push{};
   push.frame = fitter.view_buffer().address();
   push.samples = fitter.samples().address();
@@ -48,19 +50,26 @@ void SampleLists::run(uint32_t pixels, const LightView& view, const Fitter& fitt
   passes.device_pass("count", [&](gpu::Commands& commands) {
     commands.fill(lengths_, 0);
     commands.fill(blocked_, 0);
+    commands.fill(progress, 0);
     commands.barrier();
     commands.dispatch(count_[view.face_count > 1], push, groups);
   });
   passes.device_pass("scan", [&](gpu::Commands& commands) {
     scan_.record(commands, lengths_, offsets_, scratch_, texels_ + 1);
   });
-  passes.device_pass("fill", [&](gpu::Commands& commands) { commands.dispatch(fill_, push, groups); });
+  passes.device_pass("fill", [&](gpu::Commands& commands) {
+    commands.dispatch(fill_, push, groups);
+    commands.barrier();
+    list_texels_.copy_from(commands, lists_, pixels);
+  });
 }
 
 uint64_t SampleLists::list_bytes() const {
   return lengths_.bytes() + offsets_.bytes() + lists_.bytes() + slots_.bytes() + blocked_.bytes();
 }
 
-uint64_t SampleLists::bytes() const { return list_bytes() + scratch_.bytes() + pixel_texels_.bytes(); }
+uint64_t SampleLists::bytes() const {
+  return list_bytes() + list_texels_.bytes() + scratch_.bytes() + pixel_texels_.bytes();
+}
 
 }  // namespace penumbra::alias_free

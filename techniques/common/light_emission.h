@@ -16,4 +16,9 @@ inline LightEmission light_emission(const Light& light) {
   return {p.device_towards(), p.device_emission()};
 }
 
+// From one of the light's samples.
+inline LightEmission light_emission(const Light& light, Vec4f sample) {
+  return {sample, light_point(light).device_emission()};
+}
+
 }  // namespace penumbra

@@ -1,8 +1,7 @@
 #include "techniques/shadow_map_per_sample/shadow_map_per_sample.h"
 
-#include "shaders/shadow_map_accumulate.h"
+#include "techniques/common/sample_mean.h"
 #include "techniques/common/shadow_maps/renderer.h"
-#include "techniques/shadow_map_per_sample/shaders/shared.h"
 
 namespace penumbra {
 namespace shadow_map_per_sample {
@@ -33,8 +32,7 @@ class ShadowMapPerSample final : public Technique {
 
   void setup(const Case& c, gpu::PassRecorder& passes) override {
     renderer_.setup(c, passes);
-    accumulate_ = gpu::ComputePipeline(*c.device, shadow_map_accumulate_spv, sizeof(AccumulatePush));
-    lit_ = gpu::Buffer(*c.device, sizeof(float) * pixels(c), gpu::Memory::device, "visibility of one map");
+    mean_.setup(c);
   }
 
   // As for one map: all work is per frame.
@@ -44,42 +42,23 @@ class ShadowMapPerSample final : public Technique {
     const LightSamples& samples = *in.scene_case->light_samples;
     LightPoint light = light_point(in.scene_case->frame->light);
     RenderInput one = in;
-    one.device.visibility = &lit_, one.device.mask = nullptr;
+    one.device.visibility = &mean_.lit(), one.device.mask = nullptr;
     for (int i = 0; i < samples.count(); ++i) {
       const Vec4f p = samples.points[static_cast<std::size_t>(i)];
       light.towards = {double(p.x), double(p.y), double(p.z), double(p.w)};
       renderer_.render(one, light, passes);
-      accumulate(in, i, passes);
+      mean_.add(in, i, passes);
     }
   }
 
   Counters counters() override { return renderer_.counters(); }  // of the last light sample
 
-  uint64_t structure_bytes() const override { return renderer_.bytes() + lit_.bytes(); }
+  uint64_t structure_bytes() const override { return renderer_.bytes() + mean_.bytes(); }
 
  private:
-  static std::size_t pixels(const Case& c) {
-    return static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height);
-  }
-
-  void accumulate(const RenderInput& in, int i, gpu::PassRecorder& passes) {
-    const LightSamples& samples = *in.scene_case->light_samples;
-    const auto count = static_cast<uint32_t>(pixels(*in.scene_case));
-    const AccumulatePush push{lit_.address(),
-                              in.device.visibility->address(),
-                              in.device.mask->address(),
-                              count,
-                              static_cast<uint32_t>(i),
-                              static_cast<uint32_t>(samples.mask_words()),
-                              samples.weights[static_cast<std::size_t>(i)]};
-    passes.device_pass("accumulate",
-                       [&](gpu::Commands& c) { c.dispatch(accumulate_, push, (count + 63) / 64); });
-  }
-
   Params params_;
   shadow_map::Renderer renderer_;
-  gpu::ComputePipeline accumulate_;
-  gpu::Buffer lit_;
+  SampleMean mean_;
 };
 
 }  // namespace

@@ -38,7 +38,7 @@ Counters count(const Params& params, Volumes& volumes, const StencilPass& stenci
   uint64_t triangles = 0;
   for (const DrawArguments& a : draws.list) triangles += a.index_count / 3;
   out["volume_triangles"] = double(triangles);
-  out["fell_back"] = last.fell_back ? 1.0 : 0.0;
+  out["fell_back"] = double(last.fell_back);
   out["wide_counts"] = last.wide ? 1.0 : 0.0;
   out["layer_bound"] = double(last.layers);
   gpu::Device& device = *last.in.scene_case->device;
@@ -67,7 +67,7 @@ Counters count(const Params& params, Volumes& volumes, const StencilPass& stenci
   out["largest_count"] = largest, out["wrapped_pixels"] = wrapped;
   if (last.variant != Variant::zp_plus) return out;
   gpu::PassRecorder passes(device);
-  volumes.extract(*last.in.scene_case, Variant::z_fail, passes);
+  volumes.extract(*last.in.scene_case, volumes.light(), Variant::z_fail, passes);
   passes.finish();
   const std::vector<float> truth = read_volumes(Variant::z_fail, std::nullopt);
   double streaks = 0;

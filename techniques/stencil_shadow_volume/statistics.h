@@ -4,13 +4,13 @@
 
 namespace penumbra::shadow_volume {
 
-// What the last frame was drawn with.
+// What the last frame was drawn with: with an average over light samples, for the last of them.
 struct LastFrame {
   RenderInput in;
   Variant variant = Variant::z_fail;  // zp_plus becomes z_fail where it falls back
-  bool fell_back = false;
-  bool wide = false;    // counted in floats
-  uint32_t layers = 0;  // at most so many volumes lie over each other (see layers.h)
+  uint32_t fell_back = 0;             // light samples for which it did
+  bool wide = false;                  // counted in floats
+  uint32_t layers = 0;                // at most so many volumes lie over each other (see layers.h)
   std::optional<Mat4d> near_plane;
 };
 

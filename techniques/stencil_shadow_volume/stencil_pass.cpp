@@ -104,13 +104,13 @@ void StencilPass::draw(gpu::Commands& commands, const Volumes& volumes, Variant 
   commands.end_rendering();
 }
 
-void StencilPass::resolve(const RenderInput& in, bool wide, gpu::PassRecorder& passes) const {
+void StencilPass::resolve(const RenderInput& in, const LightEmission& light, bool wide, const gpu::Buffer& to,
+                          gpu::PassRecorder& passes) const {
   const ViewSamples& view = *in.view_samples;
-  const LightEmission light = light_emission(in.scene_case->frame->light);
   ResolvePush p{};
   p.light = light.towards, p.emission = light.emission;
   p.position = view.position().address(), p.normal = view.geometric_normal().address();
-  p.counts = counts_.address(), p.visibility = in.device.visibility->address();
+  p.counts = counts_.address(), p.visibility = to.address();
   p.count = static_cast<uint32_t>(view.width()) * static_cast<uint32_t>(view.height());
   passes.device_pass("resolve", [&](gpu::Commands& commands) {
     if (wide)
@@ -123,7 +123,8 @@ void StencilPass::resolve(const RenderInput& in, bool wide, gpu::PassRecorder& p
 }
 
 void StencilPass::run(const RenderInput& in, const Volumes& volumes, Variant variant,
-                      const std::optional<Mat4d>& near_plane, bool wide, gpu::PassRecorder& passes) {
+                      const std::optional<Mat4d>& near_plane, bool wide, const gpu::Buffer& to,
+                      gpu::PassRecorder& passes) {
   ensure(in, wide, passes);
   const ViewSamples& view = *in.view_samples;
   passes.device_pass("depth_copy", [&](gpu::Commands& commands) {
@@ -138,7 +139,7 @@ void StencilPass::run(const RenderInput& in, const Volumes& volumes, Variant var
     else
       draw(commands, volumes, variant, clip_from_world, near_plane);
   });
-  resolve(in, wide, passes);
+  resolve(in, volumes.light(), wide, to, passes);
 }
 
 }  // namespace penumbra::shadow_volume

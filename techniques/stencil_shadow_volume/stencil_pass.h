@@ -26,9 +26,10 @@ class StencilPass {
  public:
   void setup(gpu::Device& device);
   // `near_plane`: where volumes that hold the near plane are counted first (ZP+). `wide`: counts in floats.
-  // Passes "depth_copy", "volumes", "resolve".
+  // Visibility goes to `to`. Passes "depth_copy", "volumes", "resolve".
   void run(const RenderInput& in, const Volumes& volumes, Variant variant,
-           const std::optional<Mat4d>& near_plane, bool wide, gpu::PassRecorder& passes);
+           const std::optional<Mat4d>& near_plane, bool wide, const gpu::Buffer& to,
+           gpu::PassRecorder& passes);
   const gpu::Image& image() const { return image_; }
   uint64_t bytes() const { return image_.bytes() + wide_.bytes() + depth_.bytes() + counts_.bytes(); }
 
@@ -36,7 +37,8 @@ class StencilPass {
   void ensure(const RenderInput& in, bool wide, gpu::PassRecorder& passes);
   void draw(gpu::Commands& commands, const Volumes& volumes, Variant variant, const Mat4d& view,
             const std::optional<Mat4d>& near_plane) const;
-  void resolve(const RenderInput& in, bool wide, gpu::PassRecorder& passes) const;
+  void resolve(const RenderInput& in, const LightEmission& light, bool wide, const gpu::Buffer& to,
+               gpu::PassRecorder& passes) const;
 
   gpu::GraphicsPipeline pass_, fail_, cap_front_, cap_back_, near_;
   gpu::ComputePipeline resolve_, resolve_wide_;

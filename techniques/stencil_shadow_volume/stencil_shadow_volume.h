@@ -5,5 +5,7 @@
 namespace penumbra {
 
 TechniqueInfo stencil_shadow_volume_technique();
+// A hard shadow for each light sample, averaged.
+TechniqueInfo stencil_shadow_volume_per_sample_technique();
 
 }  // namespace penumbra

@@ -51,10 +51,10 @@ ExtractPush Volumes::extract_push(const Case& c) const {
   return p;
 }
 
-void Volumes::extract(const Case& c, Variant variant, gpu::PassRecorder& passes) {
+void Volumes::extract(const Case& c, const LightEmission& from, Variant variant, gpu::PassRecorder& passes) {
   const Frame& frame = *c.frame;
   geometry_ = c.geometry;
-  light_ = light_emission(frame.light);
+  light_ = from;
   const Vec3f light = light_.towards.xyz();
   const bool silhouette = params_.extrusion == Extrusion::silhouette;
   // Where the light is outside the scene's bounds, the far cap may be any surface at infinity with the same

@@ -20,7 +20,7 @@ class Volumes {
   // "adjacency" (host), "upload_adjacency".
   void build(const Case& c, gpu::PassRecorder& passes);
   // Lists for z-pass (sides), ZP+ (and near caps) or z-fail (and far caps). Passes "facing", "silhouettes".
-  void extract(const Case& c, Variant variant, gpu::PassRecorder& passes);
+  void extract(const Case& c, const LightEmission& light, Variant variant, gpu::PassRecorder& passes);
   // Draws lists of the last extract(); those that are not part of it are empty. `slope_bias`: for pipelines
   // that push depth back.
   void draw(gpu::Commands& commands, const gpu::GraphicsPipeline& pipeline, const Mat4d& clip_from_world,
@@ -28,6 +28,8 @@ class Volumes {
 
   Draws read_draws() const { return *static_cast<const Draws*>(draws_read_back_.mapped()); }
   uint32_t indices_per_quad() const { return indices_per_quad_; }
+  const gpu::Buffer& indices(uint32_t list) const { return indices_[list]; }
+  const LightEmission& light() const { return light_; }
   uint64_t bytes() const;
 
  private:

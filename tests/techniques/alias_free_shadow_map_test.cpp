@@ -23,10 +23,10 @@ class AliasFreeStage : public Stage {
   void expect_exact(const Rendered& r) {
     expect_exact(r, frame.geometry.closed ? ReferenceOrigin::exact : ReferenceOrigin::offset);
   }
-  void expect_exact(const Rendered& r, ReferenceOrigin origin) {
+  void expect_exact(const Rendered& r, ReferenceOrigin origin, double share = 1e-4) {
     auto& truth = truth_[origin == ReferenceOrigin::exact];
     if (!truth) truth = std::make_unique<HardShadow>(*this, origin);
-    truth->expect_exact(r);
+    truth->expect_exact(r, share);
   }
 
  private:
@@ -69,6 +69,8 @@ TEST_P(AliasFreeScene, DiffersFromEmbreeInTiesAlone) {
   AliasFreeStage stage(scene_frame(GetParam().scene, GetParam().light), 1024, 1024);
   stage.expect_exact(stage.render());
   stage.expect_exact(stage.render({{"origin", "exact"}, {"casters", "both"}}), ReferenceOrigin::exact);
+  // Not the declared origin where a mesh is open: a few more may differ, each of them explained all the same.
+  stage.expect_exact(stage.render({{"origin", "exact"}}), ReferenceOrigin::exact, 1.1e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -29,31 +29,6 @@ Frame box_over_ground(const Light& light) {
   return f;
 }
 
-// Bits on the plane that differ from Embree's; each must be a tie within 1/64 pixel in double precision.
-std::size_t differing_bits(Stage& stage, const Rendered& m, std::size_t* compared) {
-  const MatchedReference& truth = stage.truth();
-  const std::size_t words = stage.mask_words();
-  const ViewSamplesHost& view = stage.view.host();
-  std::size_t off = 0;
-  for (std::size_t i = 0; i < stage.pixels(); ++i) {
-    if (!truth.evaluated[i] || !m.evaluated[i]) continue;
-    for (std::size_t s = 0; s < static_cast<std::size_t>(stage.light_samples.count()); ++s) {
-      const std::size_t word = i * words + s / 32;
-      ++*compared;
-      if (((truth.mask[word] ^ m.mask[word]) >> (s % 32) & 1) == 0) continue;
-      ++off;
-      const Vec4f l = stage.light_samples.points[s];
-      const double reach = stage.on_surface(i, 1.0 / 64);
-      EXPECT_LE(stage.oracle()
-                    .explain(Vec3d(view.position[i].xyz()), {l.x, l.y, l.z, l.w}, view.triangle[i], reach)
-                    .distance,
-                reach)
-          << "pixel " << i << ", light sample " << s;
-    }
-  }
-  return off;
-}
-
 TEST(PlanarShadow, DiffersFromTheReferenceOnThePlaneOnlyInTies) {
   std::vector<Light> lights{point_light({1.5f, 5, 1}), directional_light({-0.4f, -1, -0.3f}),
                             testing::rectangle_light({1, 5, 2}, {0, 0, 0}, 1.5f, 1)};
@@ -66,7 +41,7 @@ TEST(PlanarShadow, DiffersFromTheReferenceOnThePlaneOnlyInTies) {
     stage.light_samples = make_light_samples(light, request);
     const Rendered m = stage.render(info, {});
     std::size_t compared = 0;
-    const std::size_t off = differing_bits(stage, m, &compared);
+    const std::size_t off = stage.differing_bits(m, &compared);
     EXPECT_GT(compared, 5000U);
     EXPECT_LT(double(off), 0.002 * double(compared));
     for (std::size_t i = 0; i < stage.pixels(); ++i) {  // visibility is the share of clear bits
@@ -85,7 +60,7 @@ TEST(PlanarShadow, DiffersOnlyInTiesUnderAMesh) {
   stage.light_samples = make_light_samples(stage.frame.light, {3, 3});
   const Rendered m = stage.render(info, {});
   std::size_t compared = 0;
-  const std::size_t off = differing_bits(stage, m, &compared);
+  const std::size_t off = stage.differing_bits(m, &compared);
   std::printf("[measured] torus knot: %zu of %zu bits differ\n", off, compared);
   EXPECT_LT(double(off), 1e-3 * double(compared));
 }
@@ -102,7 +77,7 @@ TEST(PlanarShadow, KnowsWhatIsBehindTheLightOrBelowTheHorizon) {
       stage.light_samples = make_light_samples(light, {6, 6});
       const Rendered m = stage.render(info, {});
       std::size_t compared = 0;
-      const std::size_t off = differing_bits(stage, m, &compared);
+      const std::size_t off = stage.differing_bits(m, &compared);
       if (eye_height < 0 && light.center.y > 1) {
         EXPECT_EQ(compared, 0U) << "nothing is above the horizon";
         continue;

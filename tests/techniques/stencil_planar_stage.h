@@ -103,6 +103,29 @@ class Stage : public testing::Stage {
       ADD_FAILURE() << "pixel " << i % std::size_t(view.width()) << ", " << i / std::size_t(view.width())
                     << " is " << r.visibility[i];
   }
+  // Mask bits that differ from Embree's; each must be a tie within 1/64 pixel in double precision.
+  std::size_t differing_bits(const Rendered& m, std::size_t* compared) {
+    const std::size_t words = mask_words();
+    const ViewSamplesHost& v = view.host();
+    std::size_t off = 0;
+    for (std::size_t i = 0; i < pixels(); ++i) {
+      if (!truth().evaluated[i] || (!m.evaluated.empty() && !m.evaluated[i])) continue;
+      for (std::size_t s = 0; s < static_cast<std::size_t>(light_samples.count()); ++s) {
+        const std::size_t word = i * words + s / 32;
+        ++*compared;
+        if (((truth().mask[word] ^ m.mask[word]) >> (s % 32) & 1) == 0) continue;
+        ++off;
+        const Vec4f l = light_samples.points[s];
+        const Vec4d to{l.x, l.y, l.z, l.w};
+        const Vec3d p(v.position[i].xyz()), n(v.geometric_normal[i].xyz());
+        const double reach = on_surface(i, 1.0 / 64);
+        EXPECT_TRUE(oracle().explain(p, to, v.triangle[i], reach).within(reach) ||
+                    testing::judge_horizon(frame.light, p, n, to).distance <= reach)
+            << "pixel " << i << ", light sample " << s;
+      }
+    }
+    return off;
+  }
 
  private:
   std::size_t index(int x, int y) const {

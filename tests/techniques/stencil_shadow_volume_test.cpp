@@ -2,6 +2,9 @@
 // against each triangle's volume.
 #include "techniques/stencil_shadow_volume/stencil_shadow_volume.h"
 
+#include <bit>
+#include <map>
+
 #include "near_plane_clear.h"
 #include "stencil_planar_stage.h"
 #include "techniques/stencil_shadow_volume/layers.h"
@@ -141,6 +144,38 @@ TEST(StencilShadowVolume, CameraInsideAVolumeIsRightButForZPass) {
         stage.expect_only_ties(stage.render(info, params(variant, extrusion)));
       EXPECT_GT(stage.share_off(stage.render(info, params("z_pass", extrusion))), 0.5)
           << "z-pass must miss the volume that holds the camera";
+    }
+  }
+}
+
+// A light behind the camera is nothing special to any variant; a closed mesh around the camera is right with
+// all of them while the light is inside too, and wrong with z-pass when the light is outside, so that its
+// volume holds the camera.
+TEST(StencilShadowVolume, LightBehindTheCameraAndMeshesAroundItAreRightButForZPassInTheirVolume) {
+  struct Situation {
+    const char* name;
+    Light light;
+    bool room, clear;
+  };
+  for (const Situation& s :
+       {Situation{"light behind", point_light({4, 7, 11}), false, true},
+        Situation{"sun behind", directional_light({-0.3f, -0.7f, -1}), false, true},
+        Situation{"room with a lamp", point_light({0.3f, 3, 2.5f}), true, true},
+        Situation{"room under a lamp", point_light({2, 20, 3}), true, false},
+        Situation{"room under a sun", directional_light({-0.4f, -1, -0.3f}), true, false}}) {
+    SCOPED_TRACE(s.name);
+    Frame f = box_on_ground(s.light);
+    if (s.room) testing::add_box(f.geometry, {-6.5f, -0.5f, -6.5f}, {6.5f, 7, 6.5f});
+    Stage stage(std::move(f), 128, 96);
+    ASSERT_EQ(near_plane_is_clear(stage), s.clear);
+    for (const char* extrusion : {"silhouette", "per_triangle"}) {
+      for (const char* variant : {"z_fail", "zp_plus"})
+        stage.expect_only_ties(stage.render(info, params(variant, extrusion)));
+      const Rendered pass = stage.render(info, params("z_pass", extrusion));
+      if (s.clear)
+        stage.expect_only_ties(pass);
+      else
+        EXPECT_GT(stage.share_off(pass), 0.3) << "z-pass must miss the volume that holds the camera";
     }
   }
 }
@@ -330,6 +365,81 @@ TEST(StencilShadowVolume, SecondFrameAllocatesNothingAndGivesTheSameBits) {
     stage.render_only(*t);
     EXPECT_EQ(device().allocated_bytes(), held);
     EXPECT_EQ(stage.render(*t).visibility, stage.render(*t).visibility);
+  }
+}
+
+// Mask bits, each of them a hard shadow.
+TEST(StencilShadowVolumePerSample, DiffersFromTheReferenceOnlyInTies) {
+  for (const Light& light : {testing::rectangle_light({1, 5, 2}, {0, 0, 0}, 1.5f, 1),
+                             testing::rectangle_light({0.2f, 1.0f, 3}, {0, 0.9f, 0}, 1.2f, 0.8f)})
+    for (const char* variant : {"z_fail", "zp_plus"}) {
+      SCOPED_TRACE(variant);
+      Stage stage(box_on_ground(light), 121, 83);
+      stage.light_samples = make_light_samples(light, {7, 5});
+      const std::unique_ptr<Technique> t =
+          stage.built(stencil_shadow_volume_per_sample_technique(), params(variant));
+      const Rendered m = stage.render(*t, true);
+      std::size_t compared = 0;
+      const std::size_t off = stage.differing_bits(m, &compared);
+      std::printf("[measured] %zu of %zu bits differ\n", off, compared);
+      EXPECT_GT(compared, 100000U);
+      EXPECT_LT(double(off), 0.002 * double(compared));
+      double partial = 0;
+      for (std::size_t i = 0; i < stage.pixels(); ++i) {
+        const int blocked = std::popcount(m.mask[2 * i]) + std::popcount(m.mask[2 * i + 1]);
+        EXPECT_NEAR(double{m.visibility[i]}, (35.0 - blocked) / 35, 1e-5);
+        EXPECT_EQ(m.mask[2 * i + 1] >> 3, 0U) << "bits past the count";
+        partial += blocked > 0 && blocked < 35;
+      }
+      EXPECT_GT(partial, 300);
+      const uint64_t held = device().allocated_bytes();
+      stage.render_only(*t, true);
+      EXPECT_EQ(device().allocated_bytes(), held);
+    }
+}
+
+// The slope of a sliver's depth is sound only where its short edge comes first (see shaders/append.glsl); and
+// sides that cancel have to be the same triangles, with these first two corners exchanged.
+TEST(StencilShadowVolume, SidesBeginWithTheirShortEdgeAndCancelAsTriangles) {
+  for (const Light& light : {point_light({1.5f, 5, 1}), directional_light({-0.4f, -1, -0.3f})}) {
+    Stage stage(box_on_ground(light), 8, 8);
+    shadow_volume::Params p;
+    p.extrusion = shadow_volume::Extrusion::per_triangle;
+    shadow_volume::Volumes volumes(p);
+    volumes.setup(device());
+    volumes.build(stage.the_case, stage.passes);
+    volumes.extract(stage.the_case, light_emission(light), shadow_volume::Variant::z_fail, stage.passes);
+    stage.passes.take_times();
+    const uint32_t list = shadow_volume::LIST_SIDES, n = stage.geometry.vertex_count;
+    std::vector<uint32_t> index(volumes.read_draws().list[list].index_count);
+    gpu::download(stage.passes, "download", volumes.indices(list), index.data(), 4 * index.size());
+    ASSERT_GT(index.size(), 200U);
+    // By place: the vertices of a box are not shared between its faces.
+    const auto place = [&](uint32_t v) {
+      const Vec3f q = stage.frame.geometry.positions[v % n];
+      return std::array<float, 4>{q.x, q.y, q.z, v < n ? 0.0f : 1.0f};
+    };
+    std::map<std::array<std::array<float, 4>, 3>, int> triangles;
+    for (std::size_t i = 0; i < index.size(); i += 3) {
+      EXPECT_EQ(index[i] < n, index[i + 1] < n) << "the first edge leads to infinity";
+      EXPECT_NE(index[i] < n, index[i + 2] < n);
+      ++triangles[{place(index[i]), place(index[i + 1]), place(index[i + 2])}];
+    }
+    int cancelling = 0, left = 0;
+    for (const auto& [t, count] : triangles) {
+      const auto opposite = triangles.find({t[1], t[0], t[2]});
+      const int other = opposite == triangles.end() ? 0 : opposite->second;
+      cancelling += std::min(count, other), left += std::max(count - other, 0);
+    }
+    // Of the ground's diagonal and the box's edges between faces on one side of the light: both sides cancel.
+    const shadow_volume::Params silhouettes;
+    shadow_volume::Volumes fewer(silhouettes);
+    fewer.setup(device());
+    fewer.build(stage.the_case, stage.passes);
+    fewer.extract(stage.the_case, light_emission(light), shadow_volume::Variant::z_pass, stage.passes);
+    stage.passes.take_times();
+    EXPECT_GT(cancelling, 10);
+    EXPECT_EQ(uint32_t(left) * 3, fewer.read_draws().list[list].index_count) << "what silhouettes draw";
   }
 }
 

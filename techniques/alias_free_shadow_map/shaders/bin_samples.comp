@@ -40,13 +40,13 @@ void count_samples(uint first) {
 
 // A view sample that faces the light, on a triangle of a closed mesh that does not, is seen from the mesh's inside:
 // through a silhouette's rounding, or by a camera within. There, light comes in through triangles that face it.
-void note_inner(uint slot, uint own) {
-  if (push.away.at[own] == 0u) return;
+void note_inner(uint slot) {
   const uint place = atomicAdd(push.progress.p.inner_count, 1u);
   if (place < most_inner) push.progress.p.inner[place] = slot;
 }
 
 void fill_lists(uint first) {
+  uint inner = 0u;   // a bit per view sample of this invocation
   for (uint i = 0u; i < samples_per_lane; ++i) {
     const uint pixel = first + i * group_lanes;
     if (pixel >= push.count) break;
@@ -56,9 +56,12 @@ void fill_lists(uint first) {
       const uvec4 s = push.samples.at[pixel];
       push.slots.at[pixel] = slot;
       push.lists.at[slot] = s;
-      note_inner(slot, s.w);
+      inner |= push.away.at[s.w] != 0u ? 1u << i : 0u;
     }
   }
+  // Not among the stores above, where every view sample would pay for it.
+  for (uint bits = inner; bits != 0u; bits &= bits - 1u)
+    note_inner(push.slots.at[first + uint(findLSB(bits)) * group_lanes]);
 }
 
 void main() {

@@ -4,10 +4,13 @@
 // by side: a triangle's texels in a row are one range of the array, found by two loads, and empty texels cost nothing.
 #extension GL_EXT_control_flow_attributes : require
 #include "techniques/alias_free_shadow_map/shaders/buffers.glsl"
-#include "techniques/alias_free_shadow_map/shaders/predicates.glsl"
+#include "techniques/alias_free_shadow_map/shaders/corners.glsl"
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool COUNTING = false;
 layout(push_constant, scalar) uniform Push { CastPush push; };
+
+layout(set = 0, binding = 1) uniform usampler2D lists;    // view samples in the order of the lists
+layout(set = 0, binding = 2, std140) uniform Block { LightView f; } block;
 
 // A caster in one face, and the conservative bounds of its texels.
 struct Footprint {
@@ -23,13 +26,7 @@ struct View {
   uint grid_size;
 };
 View load_view() {
-  return View(push.frame.f.faces[push.face], push.frame.f.center.xyz, push.frame.f.light, push.frame.f.grid_size);
-}
-
-Caster load_caster(uint t, vec4 light) {
-  const uint i = 3u * t;
-  return make_caster(push.positions.at[push.indices.at[i]], push.positions.at[push.indices.at[i + 1u]],
-                     push.positions.at[push.indices.at[i + 2u]], light);
+  return View(block.f.faces[push.face], block.f.center.xyz, block.f.light, block.f.grid_size);
 }
 
 // The plane through the light and the edge a-b, relative to View::center: positive where c of (a, b, c) is, when the
@@ -98,7 +95,7 @@ uvec2 row_range(const Footprint f, const View view, int y) {
 // Whoever hides a view sample writes the same word: nothing is lost between them.
 void test(uint t, const Caster caster, vec4 light, uint begin, uint end) {
   for (uint slot = begin; slot < end; ++slot) {
-    const uvec4 s = push.lists.at[slot];
+    const uvec4 s = texelFetch(lists, ivec2(slot & 8191u, slot >> 13u), 0);
     if (hides(caster, uintBitsToFloat(s.xyz), light) && s.w != t) push.blocked.at[slot] = 1u;
   }
 }

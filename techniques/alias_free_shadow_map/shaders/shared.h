@@ -26,6 +26,8 @@ SHARED_CONSTANT small_rows =
 SHARED_CONSTANT small_range = 128u;  // as far as their rows hold at most so many view samples each
 SHARED_CONSTANT item_rows = 16u;     // all else becomes items of so many rows, done by as many invocations
 SHARED_CONSTANT most_inner = 256u;   // view samples on a closed mesh's inside that are tested one by one
+SHARED_CONSTANT front_block = 64u;   // triangles with a box in common
+SHARED_CONSTANT all_rows = 0xffffffffu;  // more than small_rows of them
 SHARED_CONSTANT no_slot = 0xffffffffu;
 SHARED_CONSTANT not_listed = 0xffffffffu;  // a view sample that faces away from the light
 
@@ -46,8 +48,7 @@ struct LightView {
   Face faces[6];
   uint face_count;  // 1, or 6: the faces of a cube about the light
   uint grid_size;
-  uint both_faces;  // 1: triangles of closed meshes cast with both sides
-  uint unused;
+  uint unused[2];
 };
 
 // Minima of order-preserving integers (`hi` complemented), reset by one fill with ones.
@@ -63,9 +64,8 @@ struct Progress {
   uint pairs[2];     // triangles tested against view samples (counting only): low, high word
   uint inner_count;  // view samples on the inside of closed meshes, and the places of the first
   uint inner[256];
-  uint caster_count;
-  uint front_count;  // triangles of closed meshes that face the light: they cast on inner view samples alone
-  uint unused;
+  uint crowded_count;  // triangles that are not done at once
+  uint unused[2];
 };
 
 struct BoundsPush {
@@ -86,7 +86,7 @@ struct BinPush {
   ADDRESS_OF(FrameRef) frame;
   ADDRESS_OF(UVec4Array)
   samples;                     // per pixel: where its shadow segment begins; its own triangle, or not_listed
-  ADDRESS_OF(UintArray) away;  // as CastPush
+  ADDRESS_OF(UintArray) away;  // as FacingPush
   ADDRESS_OF(ProgressRef) progress;
   ADDRESS_OF(UintArray) lengths;  // per texel
   ADDRESS_OF(UintArray) offsets;  // per texel
@@ -97,17 +97,35 @@ struct BinPush {
   uint unused;
 };
 
-struct CastPush {
-  ADDRESS_OF(FrameRef) frame;
+struct CornersPush {
   ADDRESS_OF(Vec3Array) positions;
   ADDRESS_OF(UintArray) indices;
-  ADDRESS_OF(UintArray) closed;  // a bit per triangle
-  ADDRESS_OF(UintArray) offsets;
-  ADDRESS_OF(UVec4Array) lists;
-  ADDRESS_OF(UintArray) blocked;  // 1 or 0 per view sample, in the order of the lists
+  ADDRESS_OF(UintArray) closed;   // a bit per triangle
+  ADDRESS_OF(Vec4Array) corners;  // 3 per triangle; w of the first: 1 in closed meshes, else 0
+  uint count;
+  uint unused;
+};
+
+struct FacingPush {
+  vec4 light;                  // as LightView
   ADDRESS_OF(UintArray) away;  // per triangle: 1 when it is of a closed mesh and turned away from the light
-  ADDRESS_OF(UintArray) casters;  // casters from the front, triangles of Progress::front_count from the back
-  ADDRESS_OF(ItemArray) items;    // triangle; first row, rows
+  // Triangles that cast, from the front; from the back those of closed meshes that face the light, which cast
+  // on inner view samples alone.
+  ADDRESS_OF(UintArray) casters;
+  ADDRESS_OF(UintArray) counts;  // of both
+  ADDRESS_OF(Vec4Array) boxes;   // two corners per front_block triangles from the back
+  uint count;
+  uint both_faces;  // 1: triangles of closed meshes cast with both sides
+};
+
+struct CastPush {
+  ADDRESS_OF(UintArray) offsets;
+  ADDRESS_OF(UintArray) blocked;  // 1 or 0 per view sample, in the order of the lists
+  ADDRESS_OF(UintArray) casters;  // as FacingPush
+  // Triangle; a bit per row, from its first on, that holds more than small_range view samples, or all_rows.
+  ADDRESS_OF(ItemArray) crowded;
+  ADDRESS_OF(ItemArray) items;  // triangle; first row, rows
+  ADDRESS_OF(Vec4Array) boxes;  // as FacingPush
   ADDRESS_OF(ProgressRef) progress;
   uint face;
   uint first;   // caster, or view sample of each range of an item
@@ -127,7 +145,8 @@ struct ResolvePush {
 static_assert(sizeof(Face) == 80 && sizeof(LightView) == 80 + 6 * 80 + 16 &&
               offsetof(LightView, face_count) == 560);
 static_assert(sizeof(SampleBounds) == 32 && sizeof(Progress) == 264 * 4 && sizeof(BoundsPush) == 72);
-static_assert(sizeof(BinPush) == 80 && sizeof(CastPush) == 104 && sizeof(ResolvePush) == 32);
+static_assert(sizeof(BinPush) == 80 && sizeof(CastPush) == 72 && sizeof(FacingPush) == 56 &&
+              sizeof(CornersPush) == 40 && sizeof(ResolvePush) == 32);
 }  // namespace penumbra::alias_free
 #endif
 #undef SHARED_CONSTANT

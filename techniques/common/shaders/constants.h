@@ -36,12 +36,21 @@ struct MaskResolveConstants {
   PENUMBRA_UINT pixels, mask_words;
 };
 
+struct SampleMeanConstants {
+  PENUMBRA_ADDRESS(Floats) lit;         // what is seen of this light sample, per pixel
+  PENUMBRA_ADDRESS(Floats) visibility;  // weighted sum over the light samples so far
+  PENUMBRA_ADDRESS(Uints) masks;
+  PENUMBRA_UINT pixels, light_sample, mask_words;
+  float weight;
+};
+
 #undef PENUMBRA_UINT
 #undef PENUMBRA_ADDRESS
 #ifdef __cplusplus
 static_assert(sizeof(SampleGroupsConstants) <= 128 && sizeof(SampleGroupsConstants) % 8 == 0);
 static_assert(sizeof(PrefixScanConstants) <= 128);
 static_assert(sizeof(MaskResolveConstants) <= 128 && sizeof(MaskResolveConstants) % 8 == 0);
+static_assert(sizeof(SampleMeanConstants) == 40);
 }  // namespace
 #endif
 #endif

@@ -33,22 +33,17 @@ bool before(uint a, uint b) {
 }
 
 // The side of a volume whose near cap, seen from the light, runs a -> b counter-clockwise: outwards, so b -> a.
-// Its triangles begin at the same end whichever way it runs: the two sides on an edge that two volumes share then are the
-// same triangles with their last two corners exchanged, so that rasterisers find the same fragments and depths in both.
+//
+// Its triangles are slivers: an edge of the mesh, or its image at infinity, and two edges that are as long as the picture.
+// Rasterisers take the slope of depth from the two edges at a triangle's first corner [lavapipe: first two corners exchanged where
+// it turns the other way]; were both long, what is left of their products would be rounding. So the short edge comes first. The
+// diagonal is the same whichever way the side runs: the two sides on an edge that two volumes share are the same triangles with
+// their first two corners exchanged, so that rasterisers find the same fragments and depths in both, and they cancel.
 void put_side(uint at, uint a, uint b) {
   const uint n = push.vertex_count;
-  const bool from_b = before(b, a);
-  if (push.indices_per_quad < 6) {
-    if (from_b) put(LIST_SIDES, at, b, a, b + n);
-    else put(LIST_SIDES, at, a, a + n, b);
-    return;
-  }
-  if (from_b) {
-    put(LIST_SIDES, at, b, a, a + n);
-    put(LIST_SIDES, at + 3, b, a + n, b + n);
-  } else {
-    put(LIST_SIDES, at, a, b + n, b);
-    put(LIST_SIDES, at + 3, a, a + n, b + n);
-  }
-  if (push.indices_per_quad >= 9) put(LIST_SIDES, at + 6, 2 * n, b + n, a + n);
+  const uint end = before(b, a) ? b : a;   // of the diagonal, on the mesh
+  const uint far = (end == a ? b : a) + n;
+  put(LIST_SIDES, at, b, a, far);
+  if (push.indices_per_quad >= 6) put(LIST_SIDES, at + 3, a + n, b + n, end);
+  if (push.indices_per_quad >= 9) put(LIST_SIDES, at + 6, b + n, a + n, 2 * n);
 }
