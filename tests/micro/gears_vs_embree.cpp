@@ -1,18 +1,22 @@
 // gears, all its per-frame stages, against Embree's fastest packets in one run, on the study's scenes:
 //   micro_gears_vs_embree [SCENE ...] [key=value ...] [--benchmark_repetitions=5]
-//   [--benchmark_enable_random_interleaving=true]
-// Scenes are names under configs/scenes (the eight study_* scenes that are there by default); key=value are
-// parameters of gears, or k=16,32 and resolution=512. The opponent is ray_tracing, not robust, with packets
-// of 8 and 16 rays and both coherence hints: the fastest of the four counts. The table ends with the ratio of
-// the medians.
+// Scenes are names under configs/scenes (the study_* scenes that are there by default); k=16,32,
+// resolution=512, opponents=8_on,8_off,16_on,16_off (or none); counters=true (those of gears, once); any
+// other key=value is a parameter of gears.
+// The opponent is ray_tracing, not robust, with packets of 8 and 16 rays and the coherence hint on and off:
+// the fastest of the four counts. A repetition is one frame of each, in random order, after one that is not
+// counted. Counters: processor time of all threads, and the passes of gears. The table ends with the ratios
+// of the medians and their 95 % intervals.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <map>
 #include <sstream>
 
 #include "core/error.h"
+#include "run/statistics.h"
 #include "techniques/registry.h"
 #include "tests/techniques/gears_render.h"
 
@@ -22,11 +26,14 @@ namespace {
 using testing::DeviceScene;
 using testing::GearsRun;
 
-// Milliseconds of all passes since the last call.
-double taken(gpu::PassRecorder& passes) {
-  double ms = 0;
-  for (const gpu::PassTime& p : passes.take_times()) ms += p.ms;
-  return ms;
+// Processor time of all threads so far, in ms.
+double processor_ms() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto ms = [](const timeval& t) {
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
+  };
+  return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
 struct Embree {
@@ -35,11 +42,10 @@ struct Embree {
   std::vector<float> visibility;
   std::vector<uint32_t> mask;
 
-  Embree(DeviceScene& scene_, const char* packet, const char* coherent) : scene(scene_) {
+  Embree(DeviceScene& scene_, const std::string& packet, const std::string& coherent) : scene(scene_) {
     const Registry registry = all_techniques();
     const TechniqueInfo& info = find_technique(registry, "ray_tracing");
-    technique = info.make(resolve(
-        info.params, {{"packet", std::string(packet)}, {"coherent", std::string(coherent)}}, "ray_tracing"));
+    technique = info.make(resolve(info.params, {{"packet", packet}, {"coherent", coherent}}, "ray_tracing"));
     visibility.resize(scene.view->host().pixel_count());
     mask.resize(visibility.size() * static_cast<std::size_t>(scene.samples.mask_words()));
     technique->build(scene.scene_case, scene.passes);
@@ -55,25 +61,36 @@ struct Embree {
   }
 };
 
-// One frame per iteration, by the passes' own clock.
+// One frame, by the passes' own clock.
 template <class Renderer>
-void measure(benchmark::State& state, DeviceScene& scene, Renderer& renderer) {
-  renderer.render();
-  taken(scene.passes);
+void measure(benchmark::State& state, DeviceScene& scene, Renderer& renderer, bool show_passes) {
+  std::vector<gpu::PassTime> passes;
+  double before = 0, after = 0;
   for ([[maybe_unused]] auto _ : state) {
+    scene.passes.take_times();
+    before = processor_ms();
     renderer.render();
-    state.SetIterationTime(taken(scene.passes) / 1000);
+    after = processor_ms();
+    passes = scene.passes.take_times();
+    double ms = 0;
+    for (const gpu::PassTime& p : passes) ms += p.ms;
+    state.SetIterationTime(ms / 1000);
   }
+  state.counters["processor_ms"] = after - before;
+  if (show_passes)
+    for (const gpu::PassTime& p : passes) state.counters[p.name] = p.ms;
 }
 
 struct Options {
   std::vector<std::string> scenes;
   std::vector<int> k = {16, 32};
   int resolution = 512;
+  std::vector<std::string> opponents = {"8_on", "8_off", "16_on", "16_off"};
+  bool counters = false;
   ParamValues gears;
 };
 
-// Everything for one scene and mask size, made on first use: the dragons are large.
+// Everything for one scene and mask size.
 struct Contest {
   std::unique_ptr<DeviceScene> scene;
   std::map<std::string, std::unique_ptr<Embree>> embree;
@@ -81,27 +98,37 @@ struct Contest {
 };
 
 void add(gpu::Device& device, const Options& options, const std::string& name, int k, Contest& contest) {
-  const auto scene = [&device, &options, name, k, &contest]() -> DeviceScene& {
-    if (!contest.scene)
-      contest.scene =
-          std::make_unique<DeviceScene>(device, Scene::load(name, {"configs/scenes"}).frame(0, "", "", -1),
-                                        options.resolution, options.resolution, LightSampleRequest{k, k});
-    return *contest.scene;
-  };
+  contest.scene =
+      std::make_unique<DeviceScene>(device, Scene::load(name, {"configs/scenes"}).frame(0, "", "", -1),
+                                    options.resolution, options.resolution, LightSampleRequest{k, k});
+  const auto scene = [&contest]() -> DeviceScene& { return *contest.scene; };
   const std::string of = fmt::format("{}/k:{}/", name, k);
   const auto add_one = [&](const std::string& what, auto run) {
-    benchmark::RegisterBenchmark((of + what).c_str(), run)->UseManualTime()->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark((of + what).c_str(), run)
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(1);
   };
-  for (const char* packet : {"8", "16"})
-    for (const char* coherent : {"on", "off"})
-      add_one(fmt::format("embree_{}_coherent_{}", packet, coherent), [=, &contest](benchmark::State& s) {
-        auto& e = contest.embree[fmt::format("{}{}", packet, coherent)];
-        if (!e) e = std::make_unique<Embree>(scene(), packet, coherent);
-        measure(s, scene(), *e);
-      });
+  for (const std::string& opponent : options.opponents)
+    add_one("embree_" + opponent, [=, &contest](benchmark::State& s) {
+      auto& e = contest.embree[opponent];
+      if (!e) {
+        const std::size_t split = opponent.find('_');
+        e = std::make_unique<Embree>(scene(), opponent.substr(0, split), opponent.substr(split + 1));
+        e->render();
+      }
+      measure(s, scene(), *e, false);
+    });
   add_one("gears", [=, &contest, &options](benchmark::State& s) {
-    if (!contest.gears) contest.gears = std::make_unique<GearsRun>(scene(), options.gears);
-    measure(s, scene(), *contest.gears);
+    if (!contest.gears) {
+      contest.gears = std::make_unique<GearsRun>(scene(), options.gears);
+      contest.gears->render();
+      if (options.counters)
+        for (const auto& [counter, v] : contest.gears->technique().counters())
+          if (const double* number = std::get_if<double>(&v))
+            fmt::print("{} {}: {}\n", name, counter, *number);
+    }
+    measure(s, scene(), *contest.gears, true);
   });
 }
 
@@ -114,24 +141,44 @@ class Ratios : public benchmark::ConsoleReporter {
         times_[run.run_name.function_name].push_back(run.GetAdjustedRealTime());
     ConsoleReporter::ReportRuns(runs);
   }
-  void Finalize() override {
-    std::map<std::string, std::pair<double, double>> best;  // scene and k: Embree, gears
-    for (auto& [name, times] : times_) {
-      std::ranges::sort(times);
-      const double median = times[times.size() / 2];
-      const std::size_t slash = name.rfind('/');
-      auto& [embree, gears] = best.try_emplace(name.substr(0, slash), INFINITY, INFINITY).first->second;
-      double& slot = name.substr(slash + 1) == "gears" ? gears : embree;
-      slot = std::min(slot, median);
+  void print_ratio(const std::string& contest) const {
+    const std::vector<double>*gears = nullptr, *embree = nullptr;
+    std::string fastest;
+    for (const auto& [name, times] : times_) {
+      if (!name.starts_with(contest + "/")) continue;
+      const std::string what = name.substr(contest.size() + 1);
+      if (what == "gears")
+        gears = &times;
+      else if (!embree || median(times) < median(*embree))
+        embree = &times, fastest = what;
     }
-    for (const auto& [name, times] : best)
-      fmt::print("{}: embree {:.0f} ms, gears {:.0f} ms: {:.2f} times as fast\n", name, times.first,
-                 times.second, times.first / times.second);
+    if (!gears || !embree) return;
+    std::vector<double> ratios;  // of the frames that a repetition gave
+    for (std::size_t i = 0; i < std::min(gears->size(), embree->size()); ++i)
+      ratios.push_back((*embree)[i] / (*gears)[i]);
+    std::ranges::sort(ratios);
+    const auto interval = run::median_interval(ratios);
+    fmt::print(
+        "{}: {} {:.1f} ms, gears {:.1f} ms: {:.2f} times as fast, {:.2f} to {:.2f} in {} repetitions\n",
+        contest, fastest, median(*embree), median(*gears), median(*embree) / median(*gears), interval[0],
+        interval[1], ratios.size());
+    std::fflush(stdout);
   }
 
  private:
+  static double median(std::vector<double> times) {
+    std::ranges::sort(times);
+    return run::quantile(times, 0.5);
+  }
   std::map<std::string, std::vector<double>> times_;
 };
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream in(list);
+  for (std::string one; std::getline(in, one, ',');) parts.push_back(one);
+  return parts;
+}
 
 Options read(int argc, char** argv) {
   Options o;
@@ -145,8 +192,14 @@ Options read(int argc, char** argv) {
     const std::string key = arg.substr(0, equals), value = arg.substr(equals + 1);
     if (key == "k") {
       o.k.clear();
-      std::istringstream list(value);
-      for (std::string one; std::getline(list, one, ',');) o.k.push_back(std::stoi(one));
+      for (const std::string& one : split(value)) o.k.push_back(std::stoi(one));
+    } else if (key == "opponents") {
+      o.opponents = value == "none" ? std::vector<std::string>{} : split(value);
+      for (const std::string& one : o.opponents)
+        if (const auto known = Options{}.opponents; std::ranges::find(known, one) == known.end())
+          throw InputError("Unknown opponent '" + one + "'." + suggestion(one, known));
+    } else if (key == "counters") {
+      o.counters = value == "true";
     } else if (key == "resolution") {
       o.resolution = std::stoi(value);
     } else if (!value.empty() && value.find_first_not_of("0123456789") == std::string::npos) {
@@ -168,22 +221,29 @@ Options read(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace penumbra;
-  benchmark::Initialize(&argc, argv);
+  std::vector<char*> args(argv, argv + argc);
+  char interleave[] = "--benchmark_enable_random_interleaving=true";
+  args.insert(args.begin() + 1, interleave);
+  int count = static_cast<int>(args.size());
+  benchmark::Initialize(&count, args.data());
   try {
-    const Options options = read(argc, argv);
+    const Options options = read(count, args.data());
     gpu::Device device{gpu::DeviceOptions{}};
-    std::map<std::string, Contest> contests;
-    for (const std::string& name : options.scenes) {
-      try {
-        Scene::load(name, {"configs/scenes"});
-      } catch (const InputError& e) {
-        fmt::print(stderr, "left out: {}\n", e.what());
-        continue;
-      }
-      for (const int k : options.k) add(device, options, name, k, contests[fmt::format("{}/{}", name, k)]);
-    }
     Ratios reporter;
-    benchmark::RunSpecifiedBenchmarks(&reporter);
+    // One after the other, so that only one scene is in memory.
+    for (const std::string& name : options.scenes)
+      for (const int k : options.k) {
+        Contest contest;
+        try {
+          add(device, options, name, k, contest);
+        } catch (const InputError& e) {
+          fmt::print(stderr, "left out: {}\n", e.what());
+          continue;
+        }
+        benchmark::RunSpecifiedBenchmarks(&reporter);
+        reporter.print_ratio(fmt::format("{}/k:{}", name, k));
+        benchmark::ClearRegisteredBenchmarks();
+      }
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;
