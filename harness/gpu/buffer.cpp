@@ -1,18 +1,25 @@
 #include "gpu/buffer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
+#include "core/error.h"
 #include "gpu/device.h"
 
 namespace penumbra::gpu {
 namespace {
 
-constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                                     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-                                     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                                     VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+constexpr VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                     VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
+                                     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
+                                     VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+                                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                      VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+
+constexpr std::size_t texel_bytes = 16;
 
 constexpr VkMemoryPropertyFlags host_memory =
     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
@@ -30,10 +37,15 @@ VkMemoryPropertyFlags properties(Memory memory, bool unified) {
          (unified ? host_memory | VK_MEMORY_PROPERTY_HOST_CACHED_BIT : 0U);
 }
 
+uint64_t next_id() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
+}
+
 }  // namespace
 
 Buffer::Buffer(Device& device, std::size_t bytes, Memory memory, const std::string& what)
-    : device_(&device), bytes_(std::max<std::size_t>(bytes, 16)) {
+    : device_(&device), id_(next_id()), bytes_(std::max<std::size_t>(bytes, 16)) {
   VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = bytes_, info.usage = usage;
   check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_), what.c_str());
@@ -69,10 +81,40 @@ Buffer& Buffer::operator=(Buffer&& o) noexcept {
   std::swap(buffer_, o.buffer_);
   std::swap(memory_, o.memory_);
   std::swap(address_, o.address_);
+  std::swap(id_, o.id_);
   std::swap(bytes_, o.bytes_);
   std::swap(allocated_, o.allocated_);
   std::swap(mapped_, o.mapped_);
   return *this;
+}
+
+TexelView::~TexelView() {
+  if (view_) vkDestroyBufferView(device_->handle(), view_, nullptr);
+}
+
+TexelView::TexelView(TexelView&& o) noexcept { *this = std::move(o); }
+
+TexelView& TexelView::operator=(TexelView&& o) noexcept {
+  std::swap(device_, o.device_);
+  std::swap(view_, o.view_);
+  std::swap(of_, o.of_);
+  return *this;
+}
+
+bool TexelView::set(Device& device, const Buffer& buffer, const std::string& what) {
+  if (view_ && of_ == buffer.id()) return false;
+  const std::size_t count = buffer.bytes() / texel_bytes;
+  if (count > device.caps().max_texels)
+    throw PointError(fmt::format("{} takes {} texels; this device fetches from at most {}.", what, count,
+                                 device.caps().max_texels));
+  *this = TexelView();
+  VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+  info.buffer = buffer.handle(), info.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+  info.range = count * texel_bytes;
+  check(vkCreateBufferView(device.handle(), &info, nullptr, &view_), what.c_str());
+  device_ = &device;
+  of_ = buffer.id();
+  return true;
 }
 
 bool ensure(Buffer& buffer, Device& device, std::size_t bytes, Memory memory, const std::string& what) {

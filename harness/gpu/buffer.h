@@ -23,8 +23,8 @@ enum class Memory {
 class Buffer {
  public:
   Buffer() = default;
-  // Usage: storage, uniform, vertex, index, indirect, transfer both ways, device address. Throws PointError
-  // when out of memory, naming `what` and the bytes.
+  // Usage: storage, uniform, texels, vertex, index, indirect, transfer both ways, device address. Throws
+  // PointError when out of memory, naming `what` and the bytes.
   Buffer(Device& device, std::size_t bytes, Memory memory, const std::string& what);
   ~Buffer();
   Buffer(Buffer&&) noexcept;
@@ -34,6 +34,8 @@ class Buffer {
   VkBuffer handle() const { return buffer_; }
   VkDeviceAddress address() const { return address_; }
   std::size_t bytes() const { return bytes_; }
+  // Differs from that of any other buffer, those freed included; 0 without one.
+  uint64_t id() const { return id_; }
   // Null when the memory is not visible to the host.
   void* mapped() const { return mapped_; }
   template <class T>
@@ -46,8 +48,29 @@ class Buffer {
   VkBuffer buffer_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   VkDeviceAddress address_ = 0;
+  uint64_t id_ = 0;
   std::size_t bytes_ = 0, allocated_ = 0;
   void* mapped_ = nullptr;
+};
+
+// The vec4 of a buffer for texelFetch (ImageUse::texels): on lavapipe several times cheaper than reading them
+// by address, and cheaper than from an image, which has levels, rows and tiles to find; and nothing is copied.
+class TexelView {
+ public:
+  TexelView() = default;
+  ~TexelView();
+  TexelView(TexelView&&) noexcept;
+  TexelView& operator=(TexelView&&) noexcept;
+
+  // Of the whole `buffer`; does nothing where it is that already. True when the view is new, and has to be
+  // bound anew. Throws PointError when the buffer has more texels than the device can fetch from.
+  bool set(Device& device, const Buffer& buffer, const std::string& what);
+  VkBufferView handle() const { return view_; }
+
+ private:
+  Device* device_ = nullptr;
+  VkBufferView view_ = VK_NULL_HANDLE;
+  uint64_t of_ = 0;
 };
 
 // Grows `buffer` to at least `bytes` (contents are lost); never shrinks. True when it was reallocated.

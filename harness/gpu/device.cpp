@@ -142,6 +142,7 @@ void Device::Impl::query_caps() {
   caps.max_storage_buffer_range = limits.maxStorageBufferRange;
   caps.max_allocation = v11.maxMemoryAllocationSize;
   caps.max_image_2d = limits.maxImageDimension2D;
+  caps.max_texels = limits.maxTexelBufferElements;
   caps.max_workgroups_x = limits.maxComputeWorkGroupCount[0];
   caps.timestamp_period_ns = limits.timestampComputeAndGraphics ? limits.timestampPeriod : 0;
   caps.conservative_rasterization = has_extension(physical, VK_EXT_CONSERVATIVE_RASTERIZATION_EXTENSION_NAME);

@@ -28,6 +28,7 @@ struct Capabilities {
   uint64_t max_allocation = 0;  // bytes in one allocation
   uint64_t heap_bytes = 0;      // the largest device-local heap
   uint32_t max_image_2d = 0;
+  uint32_t max_texels = 0;  // of a buffer for fetching
   uint32_t max_workgroups_x = 0;
   bool conservative_rasterization = false;  // VK_EXT_conservative_rasterization, enabled when there
   bool geometry_shader = false, fragment_stores = false, logic_op = false, depth_clamp = false, int64 = false;

@@ -46,6 +46,7 @@ VkSampler create_sampler(Device& device, ImageUse use) {
 
 VkDescriptorType descriptor_type(ImageUse use) {
   if (use == ImageUse::uniform_block) return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  if (use == ImageUse::texels) return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
   return use == ImageUse::storage ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
                                   : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 }
@@ -89,7 +90,7 @@ void Pipeline::create_layout(Device& device, std::span<const ImageUse> images, u
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     std::vector<VkDescriptorPoolSize> sizes;
     for (ImageUse use : images) {
-      const bool sampled = use != ImageUse::storage && use != ImageUse::uniform_block;
+      const bool sampled = descriptor_type(use) == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
       samplers_.push_back(sampled ? create_sampler(device, use) : VK_NULL_HANDLE);
       bindings.push_back({static_cast<uint32_t>(bindings.size()), descriptor_type(use), 1, stages, nullptr});
       sizes.push_back({descriptor_type(use), 1});
@@ -119,6 +120,16 @@ void Pipeline::bind_images(std::span<const VkImageView> views) {
     writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     writes[i].dstSet = set_, writes[i].dstBinding = static_cast<uint32_t>(i), writes[i].descriptorCount = 1;
     writes[i].descriptorType = descriptor_type(image_uses_[i]), writes[i].pImageInfo = &infos[i];
+  }
+  vkUpdateDescriptorSets(device_->handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
+}
+
+void Pipeline::bind_texels(std::span<const VkBufferView> views) {
+  std::vector<VkWriteDescriptorSet> writes(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+    writes[i].dstSet = set_, writes[i].dstBinding = static_cast<uint32_t>(i), writes[i].descriptorCount = 1;
+    writes[i].descriptorType = descriptor_type(image_uses_[i]), writes[i].pTexelBufferView = &views[i];
   }
   vkUpdateDescriptorSets(device_->handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
 }

@@ -22,9 +22,10 @@ struct Specialization {
 };
 
 // Binding i of set 0. Images must be in GENERAL layout.
-enum class ImageUse { sampled_nearest, sampled_linear, sampled_compare, storage, uniform_block };
+enum class ImageUse { sampled_nearest, sampled_linear, sampled_compare, storage, texels, uniform_block };
 // sampled_compare: LESS_OR_EQUAL with linear filtering, clamp to a border of 1; the others clamp to edge.
-// uniform_block: no image but a uniform buffer (std140, at most 16 KiB); after all images.
+// texels: no image but a buffer's vec4 (samplerBuffer). uniform_block: no image but a uniform buffer (std140,
+// at most 16 KiB); after all images.
 
 class Pipeline {
  public:
@@ -43,6 +44,8 @@ class Pipeline {
   // Images for bindings 0, 1, ... of set 0; whole views unless a view is given. Not while commands are in
   // flight.
   void bind_images(std::span<const VkImageView> views);
+  // The same for a set that begins with buffers of texels.
+  void bind_texels(std::span<const VkBufferView> views);
   // The buffer of the uniform_block, whole. Under the same rule.
   void bind_block(const Buffer& buffer);
   VkDescriptorSet descriptors() const { return set_; }

@@ -1,6 +1,7 @@
 #include "techniques/common/sample_groups.h"
 
 #include "shaders/sample_groups.h"
+#include "shaders/sample_groups_of_buffers.h"
 #include "techniques/common/shaders/constants.h"
 
 namespace penumbra {
@@ -17,8 +18,14 @@ void SampleGroups::setup(gpu::Device& device, uint32_t lanes, bool in_lists) {
   tile_width_ = per_lane * lanes / tile_height_;
   const gpu::Specialization constants[] = {
       {0, lanes}, {1, tile_width_}, {2, tile_height_}, {3, levels_of_cuts}, {4, in_lists}};
-  pipeline_ = gpu::ComputePipeline(device, sample_groups_spv, sizeof(SampleGroupsConstants), constants,
-                                   std::vector<gpu::ImageUse>(3, gpu::ImageUse::sampled_nearest));
+  const gpu::Spirv code = in_lists ? gpu::Spirv(sample_groups_spv) : gpu::Spirv(sample_groups_of_buffers_spv);
+  const std::vector<gpu::ImageUse> arrays(3,
+                                          in_lists ? gpu::ImageUse::sampled_nearest : gpu::ImageUse::texels);
+  pipeline_ = gpu::ComputePipeline(device, code, sizeof(SampleGroupsConstants), constants, arrays);
+}
+
+void SampleGroups::bind(VkBufferView light, VkBufferView origin, VkBufferView normal) {
+  pipeline_.bind_texels(std::vector<VkBufferView>{light, origin, normal});
 }
 
 void SampleGroups::bind(VkImageView light, VkImageView origin, VkImageView normal) {

@@ -9,12 +9,12 @@ namespace penumbra {
 class SampleGroups {
  public:
   // `lanes`: view samples of a group = lanes of a subgroup, a power of two from 4 to 32.
-  // `in_lists`: for arrange() in place of record().
+  // `in_lists`: for arrange() in place of record(), and for texel arrays in place of texel buffers.
   void setup(gpu::Device& device, uint32_t lanes, bool in_lists = false);
   // Groups that width x height pixels can make at most; each has `lanes` slots.
   uint32_t capacity(uint32_t width, uint32_t height) const;
-  // Texel arrays: a LightBasis; P' (w = 0: no view sample) and Ng per pixel. Not while commands are in
-  // flight.
+  // A LightBasis; P' (w = 0: no view sample) and Ng per pixel. Not while commands are in flight.
+  void bind(VkBufferView light, VkBufferView origin, VkBufferView normal);
   void bind(VkImageView light, VkImageView origin, VkImageView normal);
   struct Input {
     uint64_t slots = 0, group_count = 0;  // addresses: out; the count is to be 0 before

@@ -29,11 +29,12 @@ uint64_t Cells::budget(const FrameState& state) const {
 
 void Cells::setup(FrameState& state) {
   gpu::Device& device = *state.device;
+  bound_ = false;
   grid_size_ = static_cast<uint32_t>(state.params.grid_size);
   prepare_ = prepare_pipeline(state);
   sample_scan_.setup(device, state.lanes, state.lanes);
   triangle_scan_.setup(device, state.lanes);
-  const std::vector<gpu::ImageUse> arrays(3, gpu::ImageUse::sampled_nearest);
+  const std::vector<gpu::ImageUse> arrays(3, gpu::ImageUse::texels);
   for (uint32_t stage = 0; stage < 2; ++stage) {
     const gpu::Specialization subgroup[] = {{0, state.lanes}, {1, stage}, {2, samples_per_lane}};
     const gpu::Specialization wide[] = {{0, wide_lanes}, {1, stage}, {2, 0}};
@@ -58,10 +59,11 @@ void Cells::build(FrameState& state, const Geometry& geometry, gpu::PassRecorder
 
 void Cells::bind(const FrameState& state) {
   walker_.bind(state, {});
-  const VkImageView arrays[] = {state.frame_texels.view(), state.view_texels.origin.view(),
-                                state.view_texels.normal.view()};
+  const VkBufferView arrays[] = {state.frame_texels.handle(), state.origin_texels.handle(),
+                                 state.normal_texels.handle()};
   for (gpu::ComputePipeline* p : {&fit_[0], &fit_[1], &bin_samples_[0], &bin_samples_[1]})
-    p->bind_images(arrays);
+    p->bind_texels(arrays);
+  bound_ = true;
 }
 
 void Cells::allocate(FrameState& state) {
@@ -244,6 +246,9 @@ void Cells::walk_chunks(FrameState& state, const RenderInput& in, gpu::PassRecor
 
 void Cells::render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
   allocate(state);
+  passes.finish();
+  if (state.set_texels(in)) bound_ = false;
+  if (!bound_) bind(state);
   state.begin(in, passes);
   bin_samples(state, in, passes);
   count_triangles(state, in, passes);

@@ -11,8 +11,6 @@ class Cells {
  public:
   void setup(FrameState& state);
   void build(FrameState& state, const Geometry& geometry, gpu::PassRecorder& passes);
-  // After build() or setup(): the arrays that the kernels fetch from.
-  void bind(const FrameState& state);
   void render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   void count(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Counters& counters);
   uint64_t bytes() const;
@@ -24,7 +22,8 @@ class Cells {
     uint32_t first_offset = 0;  // modulo 2^32
     uint32_t first_group = 0, groups = 0;
   };
-  uint32_t cell_count() const;  // with the one for what has no place on the grid
+  void bind(const FrameState& state);  // the arrays that the kernels fetch from
+  uint32_t cell_count() const;         // with the one for what has no place on the grid
   void allocate(FrameState& state);
   void bin_samples(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   void count_triangles(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
@@ -43,6 +42,7 @@ class Cells {
   gpu::Buffer sample_scratch_, triangle_scratch_, scratch_host_, counts_host_;
   gpu::Buffer group_cells_, large_, assigned_;
   std::vector<Chunk> chunks_;
+  bool bound_ = false;
   uint32_t grid_size_ = 0, group_count_ = 0, list_count_ = 0, large_count_ = 0, walks_ = 0;
   uint64_t assignments_ = 0;  // of triangles to cells
 };

@@ -9,6 +9,10 @@
 namespace penumbra::gears {
 namespace {
 
+// Groups that a workgroup does one after the other, where a group has little to do outside the tree:
+// launching one costs as much as a few nodes of the tree.
+constexpr uint32_t groups_each = 4;
+
 // Room to go on with so many groups, of which some go on as two; what finds no room goes on whole.
 uint32_t resume_capacity(uint32_t groups) { return groups + groups / 2 + 1024; }
 
@@ -16,6 +20,7 @@ uint32_t resume_capacity(uint32_t groups) { return groups + groups / 2 + 1024; }
 
 void Clusters::setup(FrameState& state) {
   gpu::Device& device = *state.device;
+  bound_ = false;
   groups_.setup(device, state.lanes);
   prepare_ = prepare_pipeline(state);
   const gpu::Specialization constants[] = {{0, state.lanes}, {1, wide_lanes}};
@@ -29,16 +34,16 @@ void Clusters::build(FrameState& state, const Geometry& geometry, gpu::PassRecor
   passes.finish();
   gpu::ensure(boxes_, *state.device, std::size_t{order_.node_count} * 2 * sizeof(Vec4f), gpu::Memory::device,
               "the box tree");
-  box_texels_.ensure(*state.device, passes, std::size_t{order_.node_count} * 2, "the box tree");
   state.set_order(order_.slots, order_.tree_slots, passes);
   passes.finish();
   order_.slots = {};
 }
 
 void Clusters::bind(const FrameState& state) {
-  const VkImageView boxes[] = {box_texels_.view()};
+  const VkBufferView boxes[] = {box_texels_.handle()};
   walker_.bind(state, boxes);
-  groups_.bind(state.frame_texels.view(), state.view_texels.origin.view(), state.view_texels.normal.view());
+  groups_.bind(state.frame_texels.handle(), state.origin_texels.handle(), state.normal_texels.handle());
+  bound_ = true;
 }
 
 void Clusters::prepare(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
@@ -58,7 +63,6 @@ void Clusters::prepare(FrameState& state, const RenderInput& in, gpu::PassRecord
       commands.barrier();
       past = first;
     }
-    box_texels_.copy_from(commands, boxes_, std::size_t{order_.node_count} * 2);
   });
 }
 
@@ -92,21 +96,27 @@ void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder&
   pc.capacity = resume_capacity(groups_.capacity(state.width, state.height));
   pc.split_turns = static_cast<uint32_t>(std::min(state.params.split_turns, state.params.dispatch_turns));
   pc.first_leaf = order_.first_leaf;
-  walks_ = walker_.run(
-      state, passes, "walk", group_count_, list_count_, true, statistics,
-      [pc](gpu::Commands& commands, const gpu::ComputePipeline& p, const Walker::Turn& t) mutable {
-        pc.list_begin = t.list_begin;
-        pc.list_end = t.list_end;
-        pc.read_list = t.read_list;
-        // First turns take the groups in an interleaved order, over a rectangle of 64 rows.
-        const uint64_t columns = (uint64_t{pc.groups} + 1023) / 1024;
-        const uint64_t work = t.resumed ? t.work_groups : columns * 1024;
-        pc.work_groups = static_cast<uint32_t>(work);
-        commands.dispatch(p, pc, work);
-      });
+  walks_ = walker_.run(state, passes, "walk", group_count_, list_count_, true, statistics,
+                       [pc, lanes = state.lanes](gpu::Commands& commands, const gpu::ComputePipeline& p,
+                                                 const Walker::Turn& t) mutable {
+                         pc.list_begin = t.list_begin;
+                         pc.list_end = t.list_end;
+                         pc.read_list = t.read_list;
+                         // First turns take the groups in an interleaved order, over a rectangle of 64 rows.
+                         const uint64_t columns = (uint64_t{pc.groups} + 1023) / 1024;
+                         const uint64_t work = t.resumed ? t.work_groups : columns * 1024;
+                         pc.work_groups = static_cast<uint32_t>(work);
+                         const bool little = t.list_end - t.list_begin <= lanes;
+                         pc.groups_each = !t.resumed && little ? groups_each : 1;
+                         commands.dispatch(p, pc, groups_for(work, pc.groups_each));
+                       });
 }
 
 void Clusters::render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes) {
+  passes.finish();
+  if (state.set_texels(in)) bound_ = false;
+  if (box_texels_.set(*state.device, boxes_, "the box tree")) bound_ = false;
+  if (!bound_) bind(state);
   state.begin(in, passes);
   prepare(state, in, passes);
   group(state, passes);

@@ -15,14 +15,13 @@ class Clusters {
  public:
   void setup(FrameState& state);
   void build(FrameState& state, const Geometry& geometry, gpu::PassRecorder& passes);
-  // After build() or setup(): the arrays that the kernels fetch from.
-  void bind(const FrameState& state);
   void render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   // The last frame once more, with statistics, onto the same masks.
   void count(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Counters& counters);
-  uint64_t bytes() const { return boxes_.bytes() + box_texels_.bytes(); }
+  uint64_t bytes() const { return boxes_.bytes(); }
 
  private:
+  void bind(const FrameState& state);  // the arrays that the kernels fetch from
   void prepare(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   void group(FrameState& state, gpu::PassRecorder& passes);
   void walk(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes,
@@ -32,8 +31,9 @@ class Clusters {
   Walker walker_;
   gpu::ComputePipeline prepare_, refit_;
   gpu::Buffer boxes_;
-  TexelArray box_texels_;  // the boxes again, for fetching
-  TriangleOrder order_;    // without its slots once they are on the device
+  gpu::TexelView box_texels_;
+  TriangleOrder order_;  // without its slots once they are on the device
+  bool bound_ = false;
   uint32_t group_count_ = 0, list_count_ = 0, walks_ = 0;
 };
 

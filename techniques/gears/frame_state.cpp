@@ -30,8 +30,6 @@ void FrameState::set_light(const Case& c, gpu::PassRecorder& passes) {
   gpu::ensure(frame, *device, sizeof(FrameConstants), gpu::Memory::device, "the frame's constants");
   gpu::ensure(header, *device, sizeof(Header), gpu::Memory::device, "counts");
   gpu::ensure(header_host, *device, sizeof(Header), gpu::Memory::read_back, "counts");
-  frame_texels.ensure(*device, passes, sizeof(FrameConstants) / sizeof(Vec4f), "the frame's constants");
-  view_texels.ensure(*device, passes, pixels());
   if (!layout.packed)
     gpu::ensure(walked, *device, std::size_t{pixels()} * static_cast<std::size_t>(layout.words) * 4,
                 gpu::Memory::device, "the masks as walked");
@@ -46,12 +44,20 @@ void FrameState::set_order(const std::vector<uint32_t>& slots_to_triangles, uint
   gpu::ensure(list, *device, bytes, gpu::Memory::device, "the list of triangles outside the tree");
   gpu::ensure(triangles, *device, slots_to_triangles.size() * 3 * sizeof(Vec4f), gpu::Memory::device,
               "triangles in working space");
-  triangle_texels.ensure(*device, passes, slots_to_triangles.size() * 3, "triangles in working space");
   gpu::upload(passes, "upload_order", order, slots_to_triangles.data(), bytes);
 }
 
 uint64_t FrameState::masks_address(const RenderInput& in) const {
   return layout.packed ? in.device.mask->address() : walked.address();
+}
+
+bool FrameState::set_texels(const RenderInput& in) {
+  bool fresh = frame_texels.set(*device, frame, "the frame's constants");
+  fresh |= triangle_texels.set(*device, triangles, "triangles in working space");
+  const ViewSamples& view = *in.view_samples;
+  fresh |= origin_texels.set(*device, view.origin(), "view samples");
+  fresh |= position_texels.set(*device, view.position(), "view samples");
+  return normal_texels.set(*device, view.geometric_normal(), "view samples") || fresh;
 }
 
 void FrameState::begin(const RenderInput& in, gpu::PassRecorder& passes) {
@@ -63,8 +69,6 @@ void FrameState::begin(const RenderInput& in, gpu::PassRecorder& passes) {
     commands.fill(masks, 0xffffffffu, 0, uint64_t{pixels()} * static_cast<uint64_t>(layout.words) * 4);
     if (walk_resolves()) commands.fill(*in.device.visibility, 0, 0, uint64_t{pixels()} * 4);
     commands.barrier();
-    frame_texels.copy_from(commands, frame, sizeof(FrameConstants) / sizeof(Vec4f));
-    view_texels.copy_from(commands, *in.view_samples, pixels());
   });
 }
 
@@ -92,7 +96,6 @@ void FrameState::prepare(gpu::Commands& commands, const gpu::ComputePipeline& pi
   pc.leaf_groups = leaf_groups;
   commands.dispatch(pipeline, pc, groups_for(slot_count, lanes));
   commands.barrier();
-  triangle_texels.copy_from(commands, triangles, std::size_t{slot_count} * 3);
 }
 
 Header FrameState::read_header(gpu::PassRecorder& passes) {
@@ -103,8 +106,7 @@ Header FrameState::read_header(gpu::PassRecorder& passes) {
 }
 
 uint64_t FrameState::bytes() const {
-  uint64_t sum = view_texels.bytes();
-  for (const TexelArray* t : {&frame_texels, &triangle_texels}) sum += t->bytes();
+  uint64_t sum = 0;
   for (const gpu::Buffer* b : {&frame, &header, &header_host, &light_samples, &weights, &order, &triangles,
                                &list, &slots, &resume, &walked})
     sum += b->bytes();

@@ -5,7 +5,6 @@
 #include "gpu/pass_recorder.h"
 #include "gpu/pipeline.h"
 #include "technique/technique.h"
-#include "techniques/common/view_texels.h"
 #include "techniques/gears/light_setup.h"
 #include "techniques/gears/params.h"
 #include "techniques/gears/shaders/constants.h"
@@ -29,9 +28,8 @@ struct FrameState {
   gpu::Buffer frame, header, header_host;
   gpu::Buffer light_samples, weights;  // world; uploaded when the light changes
   gpu::Buffer order, triangles, list;  // slots to triangles; 3 vec4 per slot; slots for the list
-  // For fetching: the frame's constants, P', P and Ng per pixel, the triangles again.
-  TexelArray frame_texels, triangle_texels;
-  ViewTexels view_texels;
+  // For fetching: the frame's constants, the triangles; P', P and Ng per pixel.
+  gpu::TexelView frame_texels, triangle_texels, origin_texels, position_texels, normal_texels;
   gpu::Buffer slots, resume;  // view samples of groups; groups to go on with
   gpu::Buffer walked;         // masks as walked, where not packed
   uint32_t tree_slots = 0, slot_count = 0;
@@ -41,6 +39,8 @@ struct FrameState {
   void set_light(const Case& c, gpu::PassRecorder& passes);
   // Slots of triangles; those past `tree` are for the list.
   void set_order(const std::vector<uint32_t>& slots_to_triangles, uint32_t tree, gpu::PassRecorder& passes);
+  // The views for fetching. True when one is new, and has to be bound anew.
+  bool set_texels(const RenderInput& in);
   // Constants up, counts and masks cleared: the first pass of a frame.
   void begin(const RenderInput& in, gpu::PassRecorder& passes);
   void prepare(gpu::Commands& commands, const gpu::ComputePipeline& pipeline,

@@ -50,7 +50,6 @@ class Gears final : public Technique {
                  : cells_.build(state_, c.frame->geometry, passes);
     built_ = true;
     passes.finish();
-    clusters() ? clusters_.bind(state_) : cells_.bind(state_);
   }
 
   void render(const RenderInput& in, gpu::PassRecorder& passes) override {

@@ -37,18 +37,19 @@ void Walker::setup(const FrameState& state, gpu::Spirv grid, gpu::Spirv any, uin
   push_bytes_ = push_bytes;
   arrays_ = 4 + more_arrays;
   pipelines_.clear();
+  views_.clear();
   pipeline(state, {true, true, true, false, Statistics::none});
 }
 
-void Walker::bind(const FrameState& state, std::span<const VkImageView> more) {
-  views_ = {state.view_texels.origin.view(), state.view_texels.position.view(),
-            state.view_texels.normal.view(), state.triangle_texels.view()};
+void Walker::bind(const FrameState& state, std::span<const VkBufferView> more) {
+  views_ = {state.origin_texels.handle(), state.position_texels.handle(), state.normal_texels.handle(),
+            state.triangle_texels.handle()};
   views_.insert(views_.end(), more.begin(), more.end());
   for (auto& [variant, p] : pipelines_) bind(state, p);
 }
 
 void Walker::bind(const FrameState& state, gpu::ComputePipeline& pipeline) const {
-  pipeline.bind_images(views_);
+  pipeline.bind_texels(views_);
   pipeline.bind_block(state.frame);
 }
 
@@ -74,7 +75,7 @@ const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Vari
   } else {
     constants.insert(constants.end(), {{1, u(m.samples)}, {5, m.infinite}});
   }
-  std::vector<gpu::ImageUse> uses(arrays_, gpu::ImageUse::sampled_nearest);
+  std::vector<gpu::ImageUse> uses(arrays_, gpu::ImageUse::texels);
   uses.push_back(gpu::ImageUse::uniform_block);
   p = gpu::ComputePipeline(*state.device, m.grid ? grid_ : any_, push_bytes_, constants, uses);
   if (!views_.empty()) bind(state, p);

@@ -28,7 +28,7 @@ class Walker {
              uint32_t more_arrays);
   // Arrays that the kernel fetches from: the state's and then `more`. Again whenever they were made anew; not
   // while commands are in flight.
-  void bind(const FrameState& state, std::span<const VkImageView> more);
+  void bind(const FrameState& state, std::span<const VkBufferView> more);
   // Runs passes called `name`. `begin`: masks are begun and the list done, else only the walk. Returns the
   // number of dispatches of the walk itself (1 when no group had to go on).
   uint32_t run(FrameState& state, gpu::PassRecorder& passes, const char* name, uint32_t groups,
@@ -48,7 +48,7 @@ class Walker {
   gpu::Spirv grid_, any_;
   uint32_t push_bytes_ = 0;
   uint32_t arrays_ = 0;
-  std::vector<VkImageView> views_;
+  std::vector<VkBufferView> views_;
   std::map<Variant, gpu::ComputePipeline> pipelines_;
 };
 

@@ -3,8 +3,8 @@
 #include "techniques/common/shaders/texels.glsl"
 layout(buffer_reference, std430, buffer_reference_align = 16) readonly buffer LightBasisRef { LightBasis b; };
 
-// A LightBasis that is the beginning of a TexelArray.
-LightBasis light_basis(sampler2D array) {
+// A LightBasis that is the beginning of an array of texels.
+LightBasis light_basis(Texels array) {
   LightBasis b;
   b.row_x = texel(array, 0u);
   b.row_y = texel(array, 1u);

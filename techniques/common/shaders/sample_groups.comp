@@ -24,9 +24,9 @@ layout(constant_id = 4) const bool IN_LISTS = false;
 #include "techniques/common/shaders/subgroup.glsl"
 const uint PER_LANE = 1u << LEVELS;   // pixels of a tile that a lane holds
 
-layout(set = 0, binding = 0) uniform sampler2D light_texels;    // a LightBasis
-layout(set = 0, binding = 1) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample)
-layout(set = 0, binding = 2) uniform sampler2D normal_texels;   // per pixel: Ng
+layout(set = 0, binding = 0) uniform Texels light_texels;    // a LightBasis
+layout(set = 0, binding = 1) uniform Texels origin_texels;   // per pixel: P' (w = 0: no view sample)
+layout(set = 0, binding = 2) uniform Texels normal_texels;   // per pixel: Ng
 layout(push_constant) uniform Push { SampleGroupsConstants pc; };
 
 const uint no_sample = 0xffffffffu;

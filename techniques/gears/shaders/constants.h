@@ -41,6 +41,8 @@ struct WalkTreeConstants {
   PENUMBRA_UINT read_list;             // which of the two resume lists is read; the other is written
   PENUMBRA_UINT capacity;              // at least `groups`
   PENUMBRA_UINT split_turns;           // loop turns after which a group goes on as two
+  PENUMBRA_UINT groups_each;           // groups that a workgroup does one after the other; 1 for what goes on
+  PENUMBRA_UINT padding;
 };
 
 struct WalkCellsConstants {

@@ -9,9 +9,9 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 0) const uint LANES = 64;
 layout(constant_id = 1) const uint STAGE = 0;
 
-layout(set = 0, binding = 0) uniform sampler2D frame_texels;    // FrameConstants
-layout(set = 0, binding = 1) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample),
-layout(set = 0, binding = 2) uniform sampler2D normal_texels;   // Ng
+layout(set = 0, binding = 0) uniform Texels frame_texels;    // FrameConstants
+layout(set = 0, binding = 1) uniform Texels origin_texels;   // per pixel: P' (w = 0: no view sample),
+layout(set = 0, binding = 2) uniform Texels normal_texels;   // Ng
 layout(push_constant) uniform Push { FitGridConstants pc; };
 
 const uint BINS = 1024u;

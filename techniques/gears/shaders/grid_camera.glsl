@@ -1,8 +1,8 @@
 // The grid camera C: its image plane carries the grid G.
 
-// What reachable() and project() need of the frame's constants, from its TexelArray: as a buffer every number of them
+// What reachable() and project() need of the frame's constants, as texels: as a buffer every number of them
 // would be loaded lane by lane on lavapipe.
-FrameConstants camera_constants(sampler2D array) {
+FrameConstants camera_constants(Texels array) {
   FrameConstants f;
   f.light = light_basis(array);
   f.camera_x = texel(array, camera_texel);

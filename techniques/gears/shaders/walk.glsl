@@ -18,10 +18,10 @@ layout(constant_id = 12) const bool WALK = true;         // walks the tree or th
 #include "techniques/common/shaders/texels.glsl"
 #include "techniques/common/shaders/edge_half_spaces.glsl"
 
-layout(set = 0, binding = 0) uniform sampler2D origin_texels;   // per pixel: P' (w = 0: no view sample),
-layout(set = 0, binding = 1) uniform sampler2D position_texels; // P,
-layout(set = 0, binding = 2) uniform sampler2D normal_texels;   // Ng
-layout(set = 0, binding = 3) uniform sampler2D triangles;       // 3 texels per slot, as prepare_triangles.comp writes them
+layout(set = 0, binding = 0) uniform Texels origin_texels;   // per pixel: P' (w = 0: no view sample),
+layout(set = 0, binding = 1) uniform Texels position_texels; // P,
+layout(set = 0, binding = 2) uniform Texels normal_texels;   // Ng
+layout(set = 0, binding = 3) uniform Texels triangles;       // 3 texels per slot, as prepare_triangles.comp writes them
 
 const uint every_lane = SG < 32u ? (1u << SG) - 1u : 0xffffffffu;
 uint turns = 0u;

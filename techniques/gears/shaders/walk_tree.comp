@@ -7,7 +7,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "techniques/gears/shaders/walk.glsl"
 
-layout(set = 0, binding = 4) uniform sampler2D boxes;   // 2 texels per node
+layout(set = 0, binding = 4) uniform Texels boxes;   // 2 texels per node
 layout(set = 0, binding = 5) uniform FrameBlock { FrameConstants frame; };
 layout(push_constant) uniform Push { WalkTreeConstants pc; };
 
@@ -124,10 +124,10 @@ void leave(uint group, uint lanes, uint next) {
   }
 }
 
-void main() {
-  uint n = linear_group();
+// One group. `turns` counts on from group to group; one for which too few are left goes on in the next dispatch, but
+// for the `first`.
+void do_group(uint n, bool first, FrameConstants f) {
   uint g = RESUMED ? n : interleaved(n);
-  if (n >= pc.work_groups || (!RESUMED && g >= pc.groups)) return;
   uint lanes = every_lane, start = 0u;
   if (RESUMED) {
     uint entry = (pc.read_list * pc.capacity + n) * 3u;
@@ -135,7 +135,7 @@ void main() {
     lanes = pc.resume.at[entry + 1u];
     start = pc.resume.at[entry + 2u];
   }
-  FrameConstants f = frame;
+  if (!RESUMED && g >= pc.groups) return;
   begin_group(g, lanes, f, pc.slots, pc.light_samples);
   if (BEGIN)
     block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
@@ -146,10 +146,28 @@ void main() {
     if (!BEGIN && COUNTING != 2u) update_open();
     uint next = 0xffffffffu;
     bool single = (lanes & (lanes - 1u)) == 0u;
-    if (!all_blocked()) next = walk(start, single ? TURN_LIMIT : pc.split_turns);
+    uint limit = single ? TURN_LIMIT : min(turns + pc.split_turns, TURN_LIMIT);
+    bool enough = first || turns + pc.split_turns <= TURN_LIMIT;
+    if (!all_blocked()) {
+      next = start;
+      if (enough) next = walk(start, limit);
+    }
     if (next != 0xffffffffu) leave(g, lanes, next);
   }
   store_mask(pc.masks);
   store_visibility(pc.visibility);
+}
+
+void main() {
+  uint n = linear_group() * pc.groups_each, end = min(n + pc.groups_each, pc.work_groups);
+  if (n >= end) return;
+  FrameConstants f = frame;
+  bool first = true;
+  do {   // a workgroup costs more to launch than a turn
+    do_group(n, first, f);
+    first = false;
+    n++;
+    turns++;
+  } while (n < end);
   add_statistics(pc.header);
 }
