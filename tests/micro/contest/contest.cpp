@@ -2,12 +2,14 @@
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <map>
 #include <sstream>
 
 #include "core/error.h"
+#include "run/statistics.h"
 #include "techniques/registry.h"
 #include "tests/techniques/gears_render.h"
 
@@ -16,11 +18,14 @@ namespace {
 
 using testing::DeviceScene;
 
-// Milliseconds of all passes since the last call.
-double taken(gpu::PassRecorder& passes) {
-  double ms = 0;
-  for (const gpu::PassTime& p : passes.take_times()) ms += p.ms;
-  return ms;
+// Processor time of all threads so far, in ms.
+double processor_ms() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto ms = [](const timeval& t) {
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
+  };
+  return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
 // A technique that is built on a scene, wherever it wants its output.
@@ -48,21 +53,34 @@ class Contestant {
   }
   Contestant(const Contestant&) = delete;
 
-  // One frame per iteration, by the passes' own clock.
-  void measure(benchmark::State& state) {
-    render();
-    taken(scene_.passes);
+  // One frame, by the passes' own clock, and what each pass took.
+  void measure(benchmark::State& state, bool show_passes) {
+    std::vector<gpu::PassTime> passes;
+    double processor = 0;
     for ([[maybe_unused]] auto _ : state) {
+      scene_.passes.take_times();
+      processor = -processor_ms();
       render();
-      state.SetIterationTime(taken(scene_.passes) / 1000);
+      processor += processor_ms();
+      passes = scene_.passes.take_times();
+      double ms = 0;
+      for (const gpu::PassTime& p : passes) ms += p.ms;
+      state.SetIterationTime(ms / 1000);
     }
+    state.counters["processor_ms"] = processor;
+    if (show_passes)
+      for (const gpu::PassTime& p : passes) state.counters[p.name] = p.ms;
   }
-
- private:
   void render() {
     technique_->render(in_, scene_.passes);
     scene_.passes.finish();
   }
+  void print_counters(const std::string& of) {
+    for (const auto& [counter, value] : technique_->counters())
+      if (const double* number = std::get_if<double>(&value)) fmt::print("{} {}: {}\n", of, counter, *number);
+  }
+
+ private:
   DeviceScene& scene_;
   std::unique_ptr<Technique> technique_;
   gpu::Buffer visibility_, mask_;
@@ -71,33 +89,38 @@ class Contestant {
   RenderInput in_;
 };
 
-// Everything for one scene and mask size, made on first use: the dragons are large.
+// Everything for one scene and mask size.
 struct Contest {
   std::unique_ptr<DeviceScene> scene;
   std::map<std::string, std::unique_ptr<Contestant>> contestants;
 };
 
 void add(gpu::Device& device, const Options& options, const std::string& name, int k, Contest& contest) {
-  const auto add_one = [&](const std::string& what, const std::string& technique, const ParamValues& params) {
-    const auto run = [&device, &options, &contest, name, k, what, technique,
-                      params](benchmark::State& state) {
-      if (!contest.scene)
-        contest.scene = std::make_unique<DeviceScene>(
-            device, Scene::load(name, {"configs/scenes"}).frame(0, options.light, "", -1), options.resolution,
-            options.resolution, LightSampleRequest{k, k});
+  contest.scene = std::make_unique<DeviceScene>(
+      device, Scene::load(name, {"configs/scenes"}).frame(0, options.light, "", -1), options.resolution,
+      options.resolution, LightSampleRequest{k, k});
+  const auto add_one = [&](const std::string& what, const std::string& technique, const ParamValues& params,
+                           bool opponent) {
+    const auto run = [&options, &contest, name, what, technique, params, opponent](benchmark::State& state) {
       auto& contestant = contest.contestants[what];
-      if (!contestant) contestant = std::make_unique<Contestant>(*contest.scene, technique, params);
-      contestant->measure(state);
+      if (!contestant) {
+        contestant = std::make_unique<Contestant>(*contest.scene, technique, params);
+        contestant->render();  // not counted
+        if (options.counters && !opponent) contestant->print_counters(name);
+      }
+      contestant->measure(state, !opponent);
     };
     benchmark::RegisterBenchmark(fmt::format("{}/k:{}/{}", name, k, what).c_str(), run)
         ->UseManualTime()
-        ->Unit(benchmark::kMillisecond);
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(1);
   };
-  for (const char* packet : {"8", "16"})
-    for (const char* coherent : {"on", "off"})
-      add_one(fmt::format("embree_{}_coherent_{}", packet, coherent), "ray_tracing",
-              {{"packet", std::string(packet)}, {"coherent", std::string(coherent)}});
-  add_one(options.technique, options.technique, options.params);
+  for (const std::string& opponent : options.opponents) {
+    const std::size_t split = opponent.find('_');
+    add_one("embree_" + opponent, "ray_tracing",
+            {{"packet", opponent.substr(0, split)}, {"coherent", opponent.substr(split + 1)}}, true);
+  }
+  add_one(options.technique, options.technique, options.params, false);
 }
 
 // Prints as usual, and keeps the times for the closing ratios.
@@ -110,25 +133,54 @@ class Ratios : public benchmark::ConsoleReporter {
         times_[run.run_name.function_name].push_back(run.GetAdjustedRealTime());
     ConsoleReporter::ReportRuns(runs);
   }
-  void Finalize() override {
-    std::map<std::string, std::pair<double, double>> best;  // scene and k: Embree, the technique
-    for (auto& [name, times] : times_) {
-      std::ranges::sort(times);
-      const double median = times[times.size() / 2];
-      const std::size_t slash = name.rfind('/');
-      auto& [embree, other] = best.try_emplace(name.substr(0, slash), INFINITY, INFINITY).first->second;
-      double& slot = name.substr(slash + 1) == technique_ ? other : embree;
-      slot = std::min(slot, median);
+  // Of one scene and mask size: the fastest opponent over the technique, repetition by repetition.
+  void print_ratio(const std::string& contest) const {
+    const std::vector<double>*own = nullptr, *embree = nullptr;
+    std::string fastest;
+    for (const auto& [name, times] : times_) {
+      if (!name.starts_with(contest + "/")) continue;
+      const std::string what = name.substr(contest.size() + 1);
+      if (what == technique_)
+        own = &times;
+      else if (!embree || median(times) < median(*embree))
+        embree = &times, fastest = what;
     }
-    for (const auto& [name, times] : best)
-      fmt::print("{}: embree {:.0f} ms, {} {:.0f} ms: {:.2f} times as fast\n", name, times.first, technique_,
-                 times.second, times.first / times.second);
+    if (!own || !embree) return;
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min(own->size(), embree->size()); ++i)
+      ratios.push_back((*embree)[i] / (*own)[i]);
+    std::ranges::sort(ratios);
+    const auto interval = penumbra::run::median_interval(ratios);
+    fmt::print("{}: {} {:.1f} ms, {} {:.1f} ms: {:.2f} times as fast, {:.2f} to {:.2f} in {} repetitions\n",
+               contest, fastest, median(*embree), technique_, median(*own), median(*embree) / median(*own),
+               interval[0], interval[1], ratios.size());
+    std::fflush(stdout);
   }
 
  private:
+  static double median(std::vector<double> times) {
+    std::ranges::sort(times);
+    return penumbra::run::quantile(times, 0.5);
+  }
   std::string technique_;
   std::map<std::string, std::vector<double>> times_;
 };
+
+std::vector<std::string> split_list(const std::string& list) {
+  std::vector<std::string> parts;
+  std::istringstream in(list);
+  for (std::string one; std::getline(in, one, ',');) parts.push_back(one);
+  return parts;
+}
+
+std::vector<std::string> read_opponents(const std::string& value) {
+  if (value == "none") return {};
+  const std::vector<std::string> known = Options{}.opponents, wanted = split_list(value);
+  for (const std::string& one : wanted)
+    if (std::ranges::find(known, one) == known.end())
+      throw InputError("Unknown opponent '" + one + "'." + suggestion(one, known));
+  return wanted;
+}
 
 void read(int argc, char** argv, Options& o) {
   std::vector<std::string> scenes;
@@ -142,8 +194,11 @@ void read(int argc, char** argv, Options& o) {
     const std::string key = arg.substr(0, equals), value = arg.substr(equals + 1);
     if (key == "k") {
       o.k.clear();
-      std::istringstream list(value);
-      for (std::string one; std::getline(list, one, ',');) o.k.push_back(std::stoi(one));
+      for (const std::string& one : split_list(value)) o.k.push_back(std::stoi(one));
+    } else if (key == "opponents") {
+      o.opponents = read_opponents(value);
+    } else if (key == "counters") {
+      o.counters = value == "true";
     } else if (key == "resolution") {
       o.resolution = std::stoi(value);
     } else if (key == "light") {
@@ -164,22 +219,30 @@ void read(int argc, char** argv, Options& o) {
 }  // namespace
 
 int run(int argc, char** argv, Options options) {
-  benchmark::Initialize(&argc, argv);
+  // Google Benchmark draws an order of its own only when asked.
+  std::vector<char*> args(argv, argv + argc);
+  char interleave[] = "--benchmark_enable_random_interleaving=true";
+  args.insert(args.begin() + 1, interleave);
+  int count = static_cast<int>(args.size());
+  benchmark::Initialize(&count, args.data());
   try {
-    read(argc, argv, options);
+    read(count, args.data(), options);
     gpu::Device device{gpu::DeviceOptions{}};
-    std::map<std::string, Contest> contests;
-    for (const std::string& name : options.scenes) {
-      try {
-        Scene::load(name, {"configs/scenes"});
-      } catch (const InputError& e) {
-        fmt::print(stderr, "left out: {}\n", e.what());
-        continue;
-      }
-      for (const int k : options.k) add(device, options, name, k, contests[fmt::format("{}/{}", name, k)]);
-    }
     Ratios reporter(options.technique);
-    benchmark::RunSpecifiedBenchmarks(&reporter);
+    // One after the other, so that only one scene is in memory.
+    for (const std::string& name : options.scenes)
+      for (const int k : options.k) {
+        Contest contest;
+        try {
+          add(device, options, name, k, contest);
+        } catch (const InputError& e) {
+          fmt::print(stderr, "left out: {}\n", e.what());
+          continue;
+        }
+        benchmark::RunSpecifiedBenchmarks(&reporter);
+        reporter.print_ratio(fmt::format("{}/k:{}", name, k));
+        benchmark::ClearRegisteredBenchmarks();
+      }
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;
