@@ -391,7 +391,7 @@ TEST(StencilShadowVolumePerSample, DiffersFromTheReferenceOnlyInTies) {
         EXPECT_EQ(m.mask[2 * i + 1] >> 3, 0U) << "bits past the count";
         partial += blocked > 0 && blocked < 35;
       }
-      EXPECT_GT(partial, 300);
+      EXPECT_GT(partial, 200);
       const uint64_t held = device().allocated_bytes();
       stage.render_only(*t, true);
       EXPECT_EQ(device().allocated_bytes(), held);
@@ -413,7 +413,7 @@ TEST(StencilShadowVolume, SidesBeginWithTheirShortEdgeAndCancelAsTriangles) {
     const uint32_t list = shadow_volume::LIST_SIDES, n = stage.geometry.vertex_count;
     std::vector<uint32_t> index(volumes.read_draws().list[list].index_count);
     gpu::download(stage.passes, "download", volumes.indices(list), index.data(), 4 * index.size());
-    ASSERT_GT(index.size(), 200U);
+    ASSERT_GT(index.size(), 100U);
     // By place: the vertices of a box are not shared between its faces.
     const auto place = [&](uint32_t v) {
       const Vec3f q = stage.frame.geometry.positions[v % n];

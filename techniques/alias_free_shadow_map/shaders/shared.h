@@ -48,7 +48,7 @@ struct LightView {
   Face faces[6];
   uint face_count;  // 1, or 6: the faces of a cube about the light
   uint grid_size;
-  uint unused[2];
+  uint unused0, unused1;
 };
 
 // Minima of order-preserving integers (`hi` complemented), reset by one fill with ones.
@@ -65,7 +65,7 @@ struct Progress {
   uint inner_count;  // view samples on the inside of closed meshes, and the places of the first
   uint inner[256];
   uint crowded_count;  // triangles that are not done at once
-  uint unused[2];
+  uint unused0, unused1;
 };
 
 struct BoundsPush {
