@@ -13,24 +13,24 @@ namespace penumbra {
 namespace {
 
 // Raise it when the reference's own computation changes, so that old entries are not taken for new ones.
-constexpr uint32_t version = 1;
+constexpr uint32_t version = 2;
 
 struct Header {
   char magic[8] = {'P', 'N', 'B', 'R', 'R', 'E', 'F', '\n'};
   uint32_t version = penumbra::version, width = 0, height = 0, reserved = 0;
   uint64_t payload_bytes = 0;
-  char checksum[32] = {};  // of the payload
+  char checksum[32] = {};  // of the entry's name, which is its key, and the payload
 };
 static_assert(sizeof(Header) == 64);
 
 // visibility, standard_error (float each), evaluated (byte): per pixel.
 constexpr std::size_t bytes_per_pixel = 9;
 
-Header header_for(int width, int height, const std::string& payload) {
+Header header_for(const std::filesystem::path& entry, int width, int height, const std::string& payload) {
   Header h;
   h.width = static_cast<uint32_t>(width), h.height = static_cast<uint32_t>(height);
   h.payload_bytes = payload.size();
-  const std::string checksum = Hasher().bytes(payload.data(), payload.size()).hex();
+  const std::string checksum = Hasher().text(entry.filename().string()).bytes(payload.data(), payload.size()).hex();
   std::memcpy(h.checksum, checksum.data(), sizeof h.checksum);
   return h;
 }
@@ -54,11 +54,11 @@ std::optional<std::string> read_whole(const std::filesystem::path& path) {
 }
 
 // Empty when the bytes are an entry of this size, else what is wrong with them.
-std::string defect(const std::string& content, int width, int height) {
+std::string defect(const std::filesystem::path& entry, const std::string& content, int width, int height) {
   const std::size_t payload_bytes =
       static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * bytes_per_pixel;
   if (content.size() < sizeof(Header)) return "is truncated";
-  const Header expected = header_for(width, height, content.substr(sizeof(Header)));
+  const Header expected = header_for(entry, width, height, content.substr(sizeof(Header)));
   Header found;
   std::memcpy(&found, content.data(), sizeof found);
   if (std::memcmp(found.magic, expected.magic, sizeof found.magic) != 0) return "is no reference";
@@ -66,7 +66,7 @@ std::string defect(const std::string& content, int width, int height) {
   if (found.width != expected.width || found.height != expected.height) return "is of another size";
   if (found.payload_bytes != payload_bytes) return "is damaged";
   if (content.size() - sizeof(Header) != payload_bytes) return "is truncated";
-  if (std::memcmp(found.checksum, expected.checksum, sizeof found.checksum) != 0) return "is damaged";
+  if (std::memcmp(found.checksum, expected.checksum, sizeof found.checksum) != 0) return "is damaged, or another one's";
   return "";
 }
 
@@ -99,7 +99,7 @@ std::optional<ReferenceScene::Converged> read_cached(const std::filesystem::path
                                                      int height) {
   const std::optional<std::string> content = read_whole(entry);
   if (!content) return std::nullopt;
-  if (const std::string what = defect(*content, width, height); !what.empty()) {
+  if (const std::string what = defect(entry, *content, width, height); !what.empty()) {
     fmt::print(stderr, "Cached reference {} {}; it is made again.\n", entry.string(), what);
     return std::nullopt;
   }
@@ -124,7 +124,7 @@ std::string write_cached(const std::filesystem::path& entry, int width, int heig
   append(payload, converged.visibility);
   append(payload, converged.standard_error);
   append(payload, converged.evaluated);
-  const Header header = header_for(width, height, payload);
+  const Header header = header_for(entry, width, height, payload);
   const std::filesystem::path part = fmt::format("{}.part-{}-{}", entry.string(), getpid(), serial++);
   std::ofstream file(part, std::ios::binary | std::ios::trunc);
   file.write(reinterpret_cast<const char*>(&header), sizeof header);

@@ -8,7 +8,9 @@
 #include "core/hash.h"
 #include "image/atomic_file.h"
 #include "run/files.h"
+#include "run/fingerprint.h"
 #include "run/flicker.h"
+#include "run/processors.h"
 #include "run/provenance.h"
 
 namespace penumbra::run {
@@ -76,9 +78,16 @@ BatchRunner::BatchRunner(const Registry& registry, const WorkerSettings& setting
 bool BatchRunner::run(const std::vector<Point>& points, const nlohmann::json& done) {
   heartbeat_.stage("scene");
   healthy_ = true;
-  if (const std::string problem = open_view(points.front()); !problem.empty()) {
+  const std::string problem = open_view(points.front());
+  heartbeat_.limit(0);
+  if (!problem.empty()) {
+    // No point's fault: another process may do better.
+    if (!device_answers()) {
+      send_({{"event", "lost"}, {"message", problem}});
+      return false;
+    }
     for (const Point& p : points) fail(p, problem, heartbeat_.read());
-    return device_answers();
+    return true;
   }
   for (const Point& point : points) {
     if (done.value(point.id, "") == fingerprint(point)) {
@@ -108,6 +117,7 @@ std::string BatchRunner::open_view(const Point& like) {
       send_(scene_json(*scene_, like.scene));
     }
     heartbeat_.stage("view samples");
+    heartbeat_.limit(settings_.measure.max_time_s + settings_.first_call_grace_s);
     view_ = std::make_unique<View>(*scene_, like, passes_, costs_);
     view_key_ = view_key(like);
     nlohmann::json event = view_->report();
@@ -123,13 +133,11 @@ std::string BatchRunner::open_view(const Point& like) {
 }
 
 std::string BatchRunner::fingerprint(const Point& point) const {
-  const MeasureSettings& m = settings_.measure;
-  Hasher hash;
-  hash.text(point.id).text(scene_->content_hash()).text(program_version()).text(device_.info().name);
-  hash.text(device_.info().driver_version).value(settings_.reference_samples).value(settings_.threads);
-  hash.value(m.warmup).value(m.repetitions).value(m.min_time_s).value(m.max_time_s).value(m.target_interval);
-  for (const std::string& image : settings_.images) hash.text(image);
-  return hash.hex();
+  const gpu::DeviceInfo& device = device_.info();
+  return run::fingerprint(point,
+                          {scene_->content_hash(), program_version(), embree_version(), cpu_model(),
+                           device.name, device.driver_version},
+                          settings_);
 }
 
 std::optional<BatchRunner::Prepared> BatchRunner::prepare(const Point& point) {
@@ -231,10 +239,12 @@ void BatchRunner::judge(Prepared& prepared) {
                                      .text(converged ? "" : point.id)
                                      .hex()
                                      .substr(0, 16);
+  const bool estimated = converged && converged->mean_standard_error > 0;
+  const Truth shown{truth, estimated ? converged->standard_error : std::span<const float>(), truth_name};
   CostTimer timer(costs_, "images");
   record["images"] = settings_.run_folder.empty()
                          ? nlohmann::json::object()
-                         : pictures_.write(run, output, evaluated, truth, truth_name, view, view_key_);
+                         : pictures_.write(run, output, evaluated, shown, view, view_key_);
   run.drop_output();
 }
 
@@ -273,7 +283,9 @@ void BatchRunner::add_flicker(nlohmann::json& metrics, PointRun& run, std::span<
 void BatchRunner::finish_group() {
   std::vector<PointRun*> runs;
   for (Prepared& p : group_) runs.push_back(p.run.get());
+  const auto use_before = processor_use();
   std::vector<Measured> measured = measure(runs, settings_.measure, heartbeat_);
+  const std::optional<double> others = others_share(use_before, processor_use());
   for (std::size_t i = 0; i < group_.size(); ++i) {
     if (!measured[i].error.empty()) {
       fail(runs[i]->point(), measured[i].error, measured[i].failed_at);
@@ -285,6 +297,7 @@ void BatchRunner::finish_group() {
     record["message"] = "";
     record["timing"] = timing_json(measured[i]);
     record["load"] = load_average();
+    record["other_programs"] = others ? nlohmann::json(*others) : nlohmann::json();
     send_({{"event", "result"}, {"record", record}});
   }
   group_.clear();

@@ -69,7 +69,7 @@ Row row_of(const json& point) {
     else
       row["param." + name] = text_of(value);
   }
-  for (const char* name : {"frame_ms", "build_ms", "wall_ms"})
+  for (const char* name : {"frame_ms", "build_ms", "wall_ms", "cpu_ms"})
     if (timing.contains(name)) add_stat(row, name, timing[name]);
   if (timing.contains("setup_ms")) row["setup_ms"] = text_of(timing["setup_ms"]["median"]);
   for (const auto& [name, stat] : passes.items()) row["pass." + name + "_ms"] = text_of(stat.at("median"));

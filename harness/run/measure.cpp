@@ -155,6 +155,7 @@ class Measurement {
     FrameTimes times = result.run->frame();
     result.frame_ms.push_back(times.frame_ms());
     result.wall_ms.push_back(times.wall_ms);
+    result.cpu_ms.push_back(times.cpu_ms);
     if (result.run->dynamic()) result.build_ms.push_back(times.build_ms());
     for (const auto* part : {&times.build, &times.render})
       for (const gpu::PassTime& pass : *part) result.passes[pass.name].push_back(pass.ms);
@@ -205,6 +206,7 @@ nlohmann::json timing_json(const Measured& m) {
           {"build_ms", to_json(summarize(builds))},
           {"setup_ms", to_json(summarize({m.run->setup_ms}))},
           {"wall_ms", to_json(summarize(m.wall_ms))},
+          {"cpu_ms", to_json(summarize(m.cpu_ms))},
           {"first_frame_ms", m.run->first_frame_ms},
           {"passes", passes},
           {"build_passes", build_passes},

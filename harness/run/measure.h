@@ -14,7 +14,8 @@ namespace penumbra::run {
 
 struct Measured {
   PointRun* run = nullptr;
-  std::vector<double> frame_ms, build_ms, wall_ms;  // one per timed frame; build_ms of dynamic points only
+  std::vector<double> frame_ms, build_ms, wall_ms,
+      cpu_ms;  // one per timed frame; build_ms of dynamic points only
   std::map<std::string, std::vector<double>> passes;
   std::string error;  // why measuring broke off; the point failed
   Heartbeat::State failed_at;

@@ -93,30 +93,40 @@ void Pictures::view_pictures(nlohmann::json& images, const std::string& folder,
   });
 }
 
+void Pictures::reference(nlohmann::json& images, const Truth& truth, const ViewSamplesHost& view) const {
+  const std::string folder = "images/reference-" + truth.name;
+  const auto write_once = [&](const char* name, const char* file, std::span<const float> values) {
+    const std::string path = make(folder, file);
+    images[name] = path;
+    if (!std::filesystem::exists(root_ / path)) write_exr_gray(root_ / path, view.width, view.height, values);
+  };
+  write_once("reference", "visibility.exr", truth.visibility);
+  if (!truth.standard_error.empty())
+    write_once("reference_standard_error", "standard_error.exr", truth.standard_error);
+}
+
 nlohmann::json Pictures::write(const PointRun& run, const Output& output, std::span<const uint8_t> evaluated,
-                               std::span<const float> truth, const std::string& truth_name,
-                               const ViewSamplesHost& view, const std::string& view_name) const {
+                               const Truth& truth, const ViewSamplesHost& view,
+                               const std::string& view_name) const {
   nlohmann::json images = nlohmann::json::object();
   if (names_.empty()) return images;
-  const std::string folder = "images/" + run.point().id, truth_folder = "images/reference-" + truth_name;
+  const std::string folder = "images/" + run.point().id, truth_folder = "images/reference-" + truth.name;
   const Frame& frame = run.lit().current;
   if (wanted("visibility")) {
     images["visibility"] = visibility(folder, view, output.visibility);
-    const std::string path = truth_folder + "/visibility.exr";
-    images["reference"] =
-        std::filesystem::exists(root_ / path) ? path : visibility(truth_folder, view, truth);
+    reference(images, truth, view);
   }
   if (wanted("shaded")) {
     shaded(images, "shaded", folder, view, frame, output.visibility, output.cosines);
     if (std::filesystem::exists(root_ / truth_folder / "shaded.png"))
       images["reference_shaded"] = truth_folder + "/shaded.png";
     else
-      shaded(images, "reference_shaded", truth_folder, view, frame, truth);
+      shaded(images, "reference_shaded", truth_folder, view, frame, truth.visibility);
   }
   if (wanted("error")) {
     images["error"] = make(folder, "error.png");
     write_png(root_ / images["error"].get<std::string>(),
-              error_map({view.width, view.height, truth, evaluated},
+              error_map({view.width, view.height, truth.visibility, evaluated},
                         {view.width, view.height, output.visibility, evaluated}, error_picture_range));
   }
   if (wanted("mask") && !output.mask.empty()) images["mask"] = mask(folder, run, output);

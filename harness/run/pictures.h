@@ -9,18 +9,23 @@
 
 namespace penumbra::run {
 
+// What a picture is held against: the converged reference, or the matched one where there is none.
+struct Truth {
+  std::span<const float> visibility;
+  std::span<const float> standard_error;  // empty: none is known, or the reference is exact
+  std::string name;                       // of its folder
+};
+
 class Pictures {
  public:
   // `names`: of the config ("visibility", "shaded", ...). Nothing is written when it is empty.
   Pictures(std::filesystem::path run_folder, std::vector<std::string> names);
 
   // All that the config asks for, as images/<id>/...; pictures that points share (the reference's, and
-  // position, normal and triangle of the view) are written once. `truth`: the converged reference's
-  // visibility, or the matched one's where there is no converged. `truth_name` and `view_name` name their
-  // folders. Returns "images" of the record. Throws WriteError.
+  // position, normal and triangle of the view) are written once. `view_name` names the
+  // view's folder. Returns "images" of the record. Throws WriteError.
   nlohmann::json write(const PointRun& run, const Output& output, std::span<const uint8_t> evaluated,
-                       std::span<const float> truth, const std::string& truth_name,
-                       const ViewSamplesHost& view, const std::string& view_name) const;
+                       const Truth& truth, const ViewSamplesHost& view, const std::string& view_name) const;
 
  private:
   bool wanted(const char* name) const;
@@ -29,6 +34,7 @@ class Pictures {
   void shaded(nlohmann::json& images, const char* name, const std::string& folder,
               const ViewSamplesHost& view, const Frame& frame, std::span<const float> v,
               std::span<const float> cosines = {}) const;
+  void reference(nlohmann::json& images, const Truth& truth, const ViewSamplesHost& view) const;
   std::string mask(const std::string& folder, const PointRun& run, const Output& output) const;
   void view_pictures(nlohmann::json& images, const std::string& folder, const ViewSamplesHost& view) const;
   std::string make(const std::string& folder, const char* file) const;

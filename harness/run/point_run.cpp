@@ -8,6 +8,7 @@
 
 #include "core/hash.h"
 #include "run/host_memory.h"
+#include "run/processors.h"
 
 namespace penumbra::run {
 namespace {
@@ -164,7 +165,7 @@ FrameTimes PointRun::frame_of_set(int set) {
   bind_output();
   FrameTimes times;
   CostTimer timer(costs_, "technique");
-  const double start = now_s();
+  const double start = now_s(), cpu_start = process_cpu_s();
   // A point that is dynamic by its parameters alone is told that every vertex moved.
   Changes step_changes = lit_->step;
   if (info_.rebuild_each_frame(point_.params) && !lit_->previous) step_changes.positions = true;
@@ -178,6 +179,7 @@ FrameTimes PointRun::frame_of_set(int set) {
   passes_.finish();
   times.render = passes_.take_times();
   times.wall_ms = (now_s() - start) * 1e3;
+  times.cpu_ms = (process_cpu_s() - cpu_start) * 1e3;
   return times;
 }
 

@@ -33,6 +33,7 @@ struct Output {
 struct FrameTimes {
   std::vector<gpu::PassTime> build, render;  // build: of a dynamic point, else empty
   double wall_ms = 0;
+  double cpu_ms = 0;  // of all threads of the process: what other programs take away does not count
   double build_ms() const;
   double frame_ms() const;  // all passes, those of a dynamic point's build too
 };

@@ -47,7 +47,7 @@ nlohmann::json cpu() {
   cpu_set_t set;
   CPU_ZERO(&set);
   const int usable = ::sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
-  return {{"model", field("/proc/cpuinfo", "model name", ':')},
+  return {{"model", cpu_model()},
           {"cores", std::thread::hardware_concurrency()},
           {"usable_cores", usable},
           // What vector code that is chosen at run time runs as.
@@ -87,6 +87,13 @@ std::string program_version() {
   return version;
 }
 
+std::string embree_version() { return RTC_VERSION_STRING; }
+
+std::string cpu_model() {
+  static const std::string model = field("/proc/cpuinfo", "model name", ':');
+  return model;
+}
+
 nlohmann::json provenance() {
   nlohmann::json j;
   j["program"] = {{"version", std::string(build_info::version)},
@@ -94,7 +101,7 @@ nlohmann::json provenance() {
                   {"build_type", std::string(build_info::build_type)},
                   {"compiler", std::string(build_info::compiler)},
                   {"flags", std::string(build_info::flags)}};
-  j["embree"] = std::string(RTC_VERSION_STRING);
+  j["embree"] = embree_version();
   j["cpu"] = cpu();
   j["memory_bytes"] = memory_bytes();
   j["os"] = os();

@@ -7,6 +7,9 @@ namespace penumbra::run {
 
 std::string program_version();  // "0.1.0 (commit 1a2b3c4, modified)"
 
+std::string embree_version();  // "3.13.5"
+std::string cpu_model();
+
 // program, compiler, cpu, memory, os, environment knobs, load, start time. Device and clock are the worker's
 // to say.
 nlohmann::json provenance();

@@ -162,6 +162,8 @@ class Supervisor {
       ++outcome_.kept;
       finished_[i] = true;
       pending.erase(i);
+    } else if (kind == "lost") {
+      idle_death_ = event.at("message");
     } else if (kind == "costs") {
       run_file_.add_costs(event.at("costs"));
     } else if (kind == "batch_done") {
@@ -219,6 +221,7 @@ class Supervisor {
       record["stage"] = at.stage;
       if (!at.pass.empty()) record["last_pass"] = at.pass;
       if (!tail.empty()) record["worker_messages"] = tail;
+      if (worker_->signal() != 0) record["signal"] = worker_->signal();
       store(record, pending);
     }
     idle_death_ = tail.empty() ? message : message + " Its last words: " + tail;

@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+
+#include "run/processors.h"
 
 namespace penumbra::run {
 namespace {
@@ -54,6 +58,45 @@ std::string outcome(const json& point) {
                      number(matched, "mask_bit_mismatch", "{:.2g}"));
 }
 
+// What speaks against the times: points whose times drifted or were not repeatable, other programs beside
+// them.
+class Doubts {
+ public:
+  void look_at(const json& point, const std::string& name) {
+    if (point.at("status") != "ok" || point.at("frame").is_null()) return;
+    const json& timing = point.at("timing");
+    if (timing.value("drifts", false)) add(drifting_, name, timing.value("drift", 0.0));
+    if (!timing.value("repeatable", true)) add(changing_, name, 0);
+    if (const json share = point.value("other_programs", json()); share.is_number())
+      busiest_ = std::max(busiest_, share.get<double>());
+  }
+  std::string text() const {
+    std::string text;
+    if (drifting_.count > 0)
+      text += fmt::format("note: times drifted while they were taken, in {} points; most in {}: {:+.0f} %\n",
+                          drifting_.count, drifting_.name, 100 * drifting_.most);
+    if (changing_.count > 0)
+      text += fmt::format("note: the output changes from frame to frame in {} points, first in {}\n",
+                          changing_.count, changing_.name);
+    if (busiest_ > busy_share)
+      text += fmt::format("note: other programs used up to {:.0f} % of the processors meanwhile\n",
+                          100 * busiest_);
+    return text;
+  }
+
+ private:
+  struct Worst {
+    int count = 0;
+    std::string name;
+    double most = 0;
+  };
+  static void add(Worst& worst, const std::string& name, double size) {
+    if (worst.count++ == 0 || std::abs(size) > std::abs(worst.most)) worst.name = name, worst.most = size;
+  }
+  Worst drifting_, changing_;
+  double busiest_ = 0;
+};
+
 }  // namespace
 
 std::string table(const RecordSource& source) {
@@ -62,6 +105,7 @@ std::string table(const RecordSource& source) {
     std::string name, outcome;
   };
   std::vector<Line> lines;
+  Doubts doubts;
   source([&](const json& point) {
     std::string name = point.at("technique").get<std::string>() + "  " + point.at("scene").get<std::string>();
     if (point.at("frame").is_null())
@@ -72,13 +116,14 @@ std::string table(const RecordSource& source) {
       for (const std::string& param : it->second)
         if (point.at("params").contains(param))
           name += "  " + param + "=" + short_text(point["params"][param]);
+    doubts.look_at(point, name);
     lines.push_back({name, outcome(point)});
   });
   std::size_t width = 0;
   for (const Line& l : lines) width = std::max(width, l.name.size());
   std::string text = fmt::format("{:<{}}  {}\n", "point", width, "frame ms, median [95 % interval]");
   for (const Line& l : lines) text += fmt::format("{:<{}}  {}\n", l.name, width, l.outcome);
-  return text;
+  return text + doubts.text();
 }
 
 }  // namespace penumbra::run

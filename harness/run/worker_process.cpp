@@ -176,6 +176,7 @@ std::string WorkerProcess::how_it_ended() const {
   return fmt::format("ended with exit code {}", WEXITSTATUS(status_));
 }
 
+int WorkerProcess::signal() const { return WIFSIGNALED(status_) ? WTERMSIG(status_) : 0; }
 int WorkerProcess::exit_code() const { return WIFSIGNALED(status_) ? -1 : WEXITSTATUS(status_); }
 
 std::string WorkerProcess::last_messages() const {

@@ -38,6 +38,7 @@ class WorkerProcess {
   uint64_t resident_bytes() const;
   // "killed by signal 6 (Aborted)", "ended with exit code 3": after ended().
   std::string how_it_ended() const;
+  int signal() const;     // that killed it; 0: none did
   int exit_code() const;  // -1 when a signal ended it
   // The end of what it wrote to standard output and error, for messages: whole lines, at most about 2 KiB.
   std::string last_messages() const;

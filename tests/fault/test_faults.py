@@ -29,6 +29,7 @@ class Faults(unittest.TestCase):
         result = sweep.run(self.config, out, resume=True, env=self.env)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(sweep.outcome(out), self.calm)
+        return result.stderr
 
     # No file can grow beyond a size: what a full disk does, at every moment that a size can name. A page is the least:
     # the worker's heartbeat is one.
@@ -97,6 +98,39 @@ class Faults(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertEqual(sweep.outcome(out), self.calm, f"damage {i}")
 
+    # Whole, with a good checksum, but of another view: a file that was renamed, or a disk that mixed two up.
+    def test_a_cache_entry_of_another_reference_is_not_believed(self):
+        result = sweep.run(self.config, self.base / "before-swap", env=self.env)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        first, second, *_ = sorted(p for p in self.cache.rglob("*") if p.is_file())
+        a, b = first.read_bytes(), second.read_bytes()
+        self.assertEqual(len(a), len(b))
+        self.assertNotEqual(a, b)
+        first.write_bytes(b), second.write_bytes(a)
+        result = sweep.run(self.config, self.base / "swapped", env=self.env)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(sweep.outcome(self.base / "swapped"), self.calm)
+        self.assertEqual({first.read_bytes(), second.read_bytes()}, {a, b})
+
+    def test_a_disk_that_is_really_full_is_exit_code_4_and_the_sweep_goes_on_when_there_is_room(self):
+        disk = self.base / "disk"
+        disk.mkdir()
+        total = sum(p.stat().st_size for p in (self.base / "calm").rglob("*") if p.is_file())
+
+        def mount(options):
+            return subprocess.run(["mount", "-t", "tmpfs", "-o", options, "none", disk], capture_output=True, text=True,
+                                  check=False)
+        if os.geteuid() != 0 or mount(f"size={total // 2}").returncode != 0:
+            self.skipTest("needs the right to mount")
+        try:
+            result = sweep.run(self.config, disk / "out", env=self.env)
+            self.assertEqual(result.returncode, 4, result.stderr)
+            self.assertIn("No space left on device", result.stderr)
+            self.assertEqual(mount("remount,size=64m").returncode, 0)
+            self.ends_well(disk / "out")
+        finally:
+            subprocess.run(["umount", disk], check=True)
+
     def test_a_journal_that_is_damaged_anywhere_is_mended(self):
         text = (self.base / "calm" / "points.jsonl").read_bytes()
         third = len(text) // 3
@@ -105,7 +139,11 @@ class Faults(unittest.TestCase):
             out = self.base / f"journal{i}"
             shutil.copytree(self.base / "calm", out)
             (out / "points.jsonl").write_bytes(damaged)
-            self.ends_well(out)
+            messages = self.ends_well(out)
+            if i == 0:
+                self.assertRegex(messages, r"points.jsonl:\d+: the last line is torn")
+            if i in (1, 3):
+                self.assertRegex(messages, r"points.jsonl:\d+: not a point's record; ignored")
 
     def test_a_damaged_header_does_not_keep_a_sweep_from_going_on(self):
         out = self.base / "header"

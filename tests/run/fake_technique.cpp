@@ -25,6 +25,7 @@ enum class Fault {
   nan,
   forget,
   greedy,
+  too_large,
   unrepeatable
 };
 enum class At { setup, build, render, tenth_frame };
@@ -42,7 +43,7 @@ const ParamTable<Params>& table() {
     ParamTable<Params> p;
     p.choice("fault", &Params::fault,
              {"none", "abort", "segfault", "exit", "hang", "throw", "unsupported", "late_unsupported", "nan",
-              "forget", "greedy", "unrepeatable"},
+              "forget", "greedy", "too_large", "unrepeatable"},
              {"", "", "what goes wrong"});
     p.choice("at", &Params::at, {"setup", "build", "render", "tenth_frame"}, {"", "", "when it goes wrong"});
     p.number("value", &Params::value, 0, 1, {"", "V", "visibility of every pixel"});
@@ -105,11 +106,15 @@ class Fake : public Technique {
       case Fault::exit:
         ::_exit(7);
       case Fault::hang:
+        std::fputs("the fake goes to sleep\n", stderr);
         for (;;) ::pause();
       case Fault::throw_:
         throw PointError("the fake cannot finish this point.");
       case Fault::late_unsupported:
         throw UnsupportedError("The fake sees that it cannot do this case.");
+      case Fault::too_large:
+        hoard_.emplace_back().reserve(hoard_.back().max_size() / 2);
+        break;
       case Fault::greedy:
         for (;;) {
           hoard_.emplace_back(std::size_t{64} << 20, '\1');

@@ -70,6 +70,7 @@ TEST(Run, ACrashFailsOnlyItsPoint) {
     const auto r = sweep.record("p1");
     EXPECT_EQ(r["status"], "failed");
     EXPECT_NE(r["message"].get<std::string>().find("signal 6"), std::string::npos) << r["message"];
+    EXPECT_EQ(r["signal"], 6);
     EXPECT_EQ(r["worker_messages"], "the fake's last words");
     EXPECT_EQ(r["last_pass"], std::string(at) == "setup"   ? "fake_setup"
                               : std::string(at) == "build" ? "fake_build"
@@ -96,7 +97,17 @@ TEST(Run, AHangPastTheLimitIsATimeout) {
   expect_healthy_neighbours(sweep);
   const auto r = sweep.record("p1");
   EXPECT_EQ(r["status"], "timeout");
+  EXPECT_EQ(r["signal"], 9);
   EXPECT_EQ(r["last_pass"], "fake_second");
+  EXPECT_EQ(r["worker_messages"], "the fake goes to sleep");
+}
+
+TEST(Run, AnAllocationThatIsRefusedFailsOnlyItsPoint) {
+  Sweep sweep;
+  const RunOutcome o = between_healthy(sweep, {{"fault", std::string("too_large")}}).run();
+  EXPECT_EQ(o.failed, 1U);
+  expect_healthy_neighbours(sweep);
+  EXPECT_EQ(sweep.record("p1")["message"], "out of host memory.");
 }
 
 TEST(Run, TooMuchMemoryFailsOnlyItsPoint) {
@@ -105,7 +116,10 @@ TEST(Run, TooMuchMemoryFailsOnlyItsPoint) {
   const RunOutcome o = between_healthy(sweep, {{"fault", std::string("greedy")}}).run();
   EXPECT_EQ(o.failed, 1U);
   expect_healthy_neighbours(sweep);
-  EXPECT_NE(sweep.record("p1")["message"].get<std::string>().find("memory"), std::string::npos);
+  const auto r = sweep.record("p1");
+  EXPECT_NE(r["message"].get<std::string>().find("memory"), std::string::npos);
+  EXPECT_EQ(r["signal"], 9);
+  EXPECT_EQ(r["last_pass"], "fake_second");
 }
 
 TEST(Run, AnErrorOfThePointIsItsMessage) {

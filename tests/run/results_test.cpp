@@ -7,6 +7,7 @@
 
 #include "run/files.h"
 #include "run/judge.h"
+#include "run/processors.h"
 #include "run/record.h"
 #include "run/statistics.h"
 #include "run/table.h"
@@ -136,6 +137,32 @@ TEST(Table, ShowsTheParametersThatDifferAndTheMessageOfAFailure) {
   EXPECT_NE(t.find("grid_size=64"), std::string::npos) << t;
   EXPECT_EQ(t.find("fit="), std::string::npos) << t;
   EXPECT_NE(t.find("timeout: too slow"), std::string::npos) << t;
+}
+
+TEST(Table, SaysWhatSpeaksAgainstTheTimes) {
+  json steady = ok_record("a", 3, 5), drifting = ok_record("b", 3, 7), beside_others = ok_record("c", 3, 9);
+  EXPECT_EQ(table(source_of({steady})).find("note:"), std::string::npos);
+  drifting["timing"]["drifts"] = true, drifting["timing"]["drift"] = -0.12;
+  beside_others["other_programs"] = 0.35;
+  beside_others["timing"]["repeatable"] = false;
+  const std::string t = table(source_of({steady, drifting, beside_others}));
+  EXPECT_NE(t.find("drifted while they were taken, in 1 points"), std::string::npos) << t;
+  EXPECT_NE(t.find("-12 %"), std::string::npos) << t;
+  EXPECT_NE(t.find("up to 35 % of the processors"), std::string::npos) << t;
+  EXPECT_NE(t.find("changes from frame to frame in 1 points"), std::string::npos) << t;
+}
+
+TEST(OthersShare, IsWhatIsNeitherIdleNorOurs) {
+  const ProcessorUse before{100, 50, 10};
+  EXPECT_NEAR(*others_share(before, ProcessorUse{104, 51, 12}), 0.25,
+              1e-12);  // 3 of 4 s busy, 2 of them ours
+  EXPECT_EQ(*others_share(before, ProcessorUse{104, 52, 12}), 0);
+  EXPECT_EQ(*others_share(before, ProcessorUse{104, 52, 13}), 0);  // clocks of different steps
+  EXPECT_FALSE(others_share(before, ProcessorUse{100.1, 50, 10}).has_value());
+  EXPECT_FALSE(others_share(std::nullopt, before).has_value());
+  const auto now = processor_use();
+  ASSERT_TRUE(now.has_value());
+  EXPECT_GT(now->all, now->idle);
 }
 
 TEST(GoogleBenchmark, HasOneEntryForEachSample) {
