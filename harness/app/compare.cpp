@@ -9,6 +9,7 @@
 #include "compare/comparison.h"
 #include "compare/output.h"
 #include "core/error.h"
+#include "report/comparison.h"
 #include "run/files.h"
 
 namespace penumbra {
@@ -17,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CompareArguments {
-  std::string baseline, current, thresholds, junit;
+  std::string baseline, current, thresholds, junit, report;
   bool as_json = false, any_machine = false;
 };
 
@@ -70,6 +71,14 @@ compare::KnownNames known_names(const Context& context,
   return known;
 }
 
+void write_report(const fs::path& folder, const compare::Comparison& result,
+                  const compare::RunResults& baseline, const compare::RunResults& current) {
+  const ReportSummary summary = write_comparison_report(compare::page_data(result, baseline, current),
+                                                        baseline.folder, current.folder, folder);
+  for (const std::string& warning : summary.warnings) fmt::print(stderr, "penumbra: warning: {}\n", warning);
+  fmt::print(stderr, "report: {}\n", summary.index.string());
+}
+
 void compare_command(const CompareArguments& arguments, Context& context) {
   const fs::path baseline_path = find_baseline(arguments.baseline, context);
   const compare::RunResults baseline = compare::read_results(baseline_path);
@@ -87,6 +96,7 @@ void compare_command(const CompareArguments& arguments, Context& context) {
   else
     fmt::print("{}", compare::table(result));
   if (!arguments.junit.empty()) run::write_text(arguments.junit, compare::junit_xml(result));
+  if (!arguments.report.empty()) write_report(arguments.report, result, baseline, current);
   if (!result.error.empty()) throw InputError(result.error);
   context.exit_code = result.bad() ? exit_points_failed : exit_done;
 }
@@ -115,6 +125,8 @@ void add_compare(CLI::App& app, Context& context) {
   sub->add_option("--thresholds", arguments->thresholds,
                   "Rules (default: NAME.thresholds.json beside a baseline NAME.json, else built-in ones)");
   sub->add_option("--junit", arguments->junit, "Also write JUnit XML");
+  sub->add_option("--report", arguments->report,
+                  "Also write a page of both runs side by side, with their pictures, into this folder");
   sub->add_flag("--json", arguments->as_json, "Every finding as a JSON object");
   sub->add_flag("--any-machine", arguments->any_machine, "Judge times between different machines too");
   sub->callback([arguments, &context] { compare_command(*arguments, context); });

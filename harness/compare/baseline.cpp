@@ -19,6 +19,12 @@ json rounded(const json& value) {
   return out;
 }
 
+// Baselines are committed without pictures.
+json without_images(json point) {
+  point.erase("images");
+  return point;
+}
+
 json header(const json& run) {
   json out;
   for (const char* key : {"name", "config", "program", "embree", "cpu", "memory_bytes", "os", "environment",
@@ -53,7 +59,7 @@ std::string baseline_text(const RunResults& results) {
       fmt::format("{{\"schema_version\": 1,\n\"run\": {},\n\"points\": [", header(results.run).dump());
   bool first = true;
   for (const json& point : results.points) {
-    text += (first ? "\n" : ",\n") + rounded(point).dump();
+    text += (first ? "\n" : ",\n") + without_images(rounded(point)).dump();
     first = false;
   }
   return text + "\n]}\n";

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "compare/match.h"
+#include "compare/pixels.h"
 #include "compare/significance.h"
 #include "core/machine.h"
 
@@ -38,6 +39,7 @@ class Judge {
     const std::vector<const Pair*> anchor_of = anchors(pairs, thresholds_);
     for (std::size_t i = 0; i < pairs.size(); ++i) judge_pair(pairs[i], anchor_of[i]);
     judge_times();
+    judge_pixel_checks(pixel_checks_, thresholds_.significance, out_.findings);
     remark(pairs);
     out_.error = error(pairs);
     return std::move(out_);
@@ -51,6 +53,11 @@ class Judge {
     std::size_t n, m;
   };
 
+  static std::optional<std::size_t> place(const RunResults& results, const json* point) {
+    if (!point) return std::nullopt;
+    return static_cast<std::size_t>(point - results.points.data());
+  }
+
   Finding& add(const std::string& metric, Verdict verdict, const std::string& message = "") {
     Finding& f = out_.findings.emplace_back();
     f.point = out_.points.size() - 1;
@@ -61,7 +68,8 @@ class Judge {
   void judge_pair(const Pair& pair, const Pair* anchor) {
     const json& any = pair.current ? *pair.current : *pair.baseline;
     out_.points.push_back({any.value("key", any.at("id").get<std::string>()), any.at("technique"),
-                           any.at("scene"), any.at("frame"), any.at("params"), 0});
+                           any.at("scene"), any.at("frame"), any.at("params"), 0,
+                           place(baseline_, pair.baseline), place(current_, pair.current)});
     if (!pair.baseline) {
       add("status", Verdict::added, "the baseline has no such point");
       return;
@@ -83,6 +91,7 @@ class Judge {
       else
         judge_quality(pair, name, quality_value(before, name), quality_value(now, name));
     }
+    prepare_pixels(pair);
   }
 
   // True when both have figures that can be compared.
@@ -198,11 +207,14 @@ class Judge {
       f.message = "is the anchor";
       return false;
     }
-    const auto frame_samples = [](const json& point) {
-      return samples_of(point.at("timing").at("frame_ms"));
+    // Processor time is a multiple of processor time, every other time of the frame's.
+    const auto anchor_samples = [&f](const json& point) {
+      const json& timing = point.at("timing");
+      return f.metric == "timing.cpu_ms" && timing.contains("cpu_ms") ? samples_of(timing.at("cpu_ms"))
+                                                                      : samples_of(timing.at("frame_ms"));
     };
-    before = ratio_samples(before, frame_samples(*anchor->baseline));
-    now = ratio_samples(now, frame_samples(*anchor->current));
+    before = ratio_samples(before, anchor_samples(*anchor->baseline));
+    now = ratio_samples(now, anchor_samples(*anchor->current));
     f.against_anchor = true;
     f.ratio.reset();
     if (before.empty() || now.empty()) {
@@ -258,6 +270,18 @@ class Judge {
     }
   }
 
+  void prepare_pixels(const Pair& pair) {
+    if (!has_pixels(baseline_, *pair.baseline, current_, *pair.current)) return;
+    const Rule* r = rule(pair, "pixels.farther");
+    Finding& f = add("pixels.farther", Verdict::unjudged);
+    if (!r || !r->max) return;
+    f.rule = r->place;
+    PixelOutcome outcome = judge_pixels(baseline_, *pair.baseline, current_, *pair.current);
+    f.message = outcome.why_not;
+    if (outcome.why_not.empty())
+      pixel_checks_.push_back({out_.findings.size() - 1, std::move(outcome), *r->max});
+  }
+
   std::string too_few(const TimeTest& t) const {
     const double wanted = thresholds_.significance / double(tests_.size());
     if (smallest_p(t.n, t.m) <= wanted) return "";
@@ -309,6 +333,7 @@ class Judge {
   const CompareOptions& options_;
   Comparison out_;
   std::vector<TimeTest> tests_;
+  std::vector<PixelCheck> pixel_checks_;
   std::set<const Rule*> used_;
   std::set<std::string> differing_;
 };

@@ -28,7 +28,7 @@ struct Finding {
   Verdict verdict = Verdict::unjudged;
   std::optional<double> baseline, current;  // medians of times
   std::optional<double> ratio;  // current / baseline; of times held against an anchor: of the ratios
-  std::optional<double> p;      // of times: probability of such a difference by chance, corrected
+  std::optional<double> p;      // of times and pixels: probability of such a difference by chance, corrected
   bool against_anchor = false;
   std::string message;  // why, in words; of every verdict that is neither pass nor unjudged by lack of a rule
   std::string rule;     // its place
@@ -38,6 +38,8 @@ struct ComparedPoint {
   std::string key, technique, scene;
   nlohmann::json frame, params;
   double current_ms = 0;  // median frame time, 0 when there is none
+  // Its records in RunResults::points of either run.
+  std::optional<std::size_t> baseline, current;
 };
 
 struct Comparison {

@@ -91,7 +91,7 @@ RunResults from_document(const fs::path& path) {
         fmt::format("{}: found no results, expected an object with run and points.", path.string()));
   check_version(document, path);
   check_header(document.at("run"), path);
-  RunResults results{path.string(), document.at("run"), {}};
+  RunResults results{path.string(), document.at("run"), {}, path.parent_path()};
   std::size_t i = 0;
   for (const json& record : document.at("points")) {
     if (const std::string why = no_record(record); !why.empty())
@@ -103,7 +103,7 @@ RunResults from_document(const fs::path& path) {
 }
 
 RunResults from_journal(const fs::path& folder) {
-  RunResults results{folder.string(), parse_file(folder / "run.json"), {}};
+  RunResults results{folder.string(), parse_file(folder / "run.json"), {}, folder};
   check_header(results.run, folder / "run.json");
   check_version(results.run, folder / "run.json");
   std::ifstream in(folder / "points.jsonl", std::ios::binary);
@@ -139,7 +139,7 @@ RunResults from_runs(const fs::path& folder) {
 json stats_only(const json& timing) {
   json out = json::object();
   if (!timing.is_object()) return out;
-  for (const char* name : {"frame_ms", "build_ms", "setup_ms", "wall_ms", "passes"})
+  for (const char* name : {"frame_ms", "build_ms", "setup_ms", "wall_ms", "cpu_ms", "passes"})
     if (timing.contains(name)) out[name] = timing.at(name);
   return out;
 }
@@ -185,7 +185,7 @@ json essential(const json& record) {
     if (record.contains(key)) out[key] = record.at(key);
   if (record.at("status") != "ok") return out;
   out["timing"] = stats_only(record.value("timing", json()));
-  for (const char* group : {"memory", "metrics", "metrics_own", "metrics_matched"})
+  for (const char* group : {"memory", "metrics", "metrics_own", "metrics_matched", "images"})
     if (record.contains(group)) out[group] = record.at(group);
   json counters = json::object();
   if (const auto all = record.find("counters"); all != record.end() && all->is_object())
@@ -206,7 +206,7 @@ std::map<std::string, json> figures(const json& point) {
   for (const char* group : {"memory", "metrics", "metrics_matched", "counters"})
     if (point.contains(group)) flatten(group, point.at(group), out);
   const json timing = point.value("timing", json::object());
-  for (const char* name : {"frame_ms", "build_ms", "setup_ms", "wall_ms"})
+  for (const char* name : {"frame_ms", "build_ms", "setup_ms", "wall_ms", "cpu_ms"})
     if (timing.contains(name) && is_stat(timing.at(name)))
       out[std::string("timing.") + name] = timing.at(name);
   if (timing.contains("passes") && timing.at("passes").is_object())

@@ -13,6 +13,7 @@ struct RunResults {
   std::string name;                    // the path as given
   nlohmann::json run;                  // run.json
   std::vector<nlohmann::json> points;  // only what comparisons and baselines need of each
+  std::filesystem::path folder;        // that its points' images are relative to; empty: it has none
   // Machine of a point: its own in a merged run, else the run's.
   nlohmann::json machine(const nlohmann::json& point) const;
 };
@@ -23,7 +24,7 @@ struct RunResults {
 RunResults read_results(const std::filesystem::path& path);
 
 // The part of a record that is kept: what identifies it, its status, its times with their samples, memory,
-// metrics and scalar counters.
+// metrics, scalar counters, and where its images are.
 nlohmann::json essential(const nlohmann::json& record);
 
 // What makes two points the same: technique, scene, frame and all parameters.

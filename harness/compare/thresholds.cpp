@@ -14,9 +14,10 @@ const std::vector<std::string> conditions = {"max",          "min",       "max_i
 // Groups of metrics whose members techniques name themselves end in a dot.
 const std::vector<std::string>& metric_names() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = {"timing.frame_ms", "timing.build_ms",        "timing.setup_ms",
-                                    "timing.wall_ms",  "memory.device_bytes",    "memory.host_peak_bytes",
-                                    "timing.passes.",  "memory.structure_bytes", "counters."};
+    std::vector<std::string> all = {
+        "timing.frame_ms",        "timing.build_ms",     "timing.setup_ms",        "timing.wall_ms",
+        "timing.cpu_ms",          "memory.device_bytes", "memory.host_peak_bytes", "timing.passes.",
+        "memory.structure_bytes", "counters.",           "pixels.farther"};
     for (const char* name : {"mae", "rmse", "max", "psnr", "ssim", "flip", "bias", "acne", "leak", "flicker",
                              "evaluated_pixels", "reference_standard_error"})
       all.push_back(std::string("metrics.") + name);
@@ -80,6 +81,9 @@ void read_conditions(const JsonNode& node, Rule& rule) {
   if (is_time(rule.metric) && other)
     node.complain(
         "times take max_ratio and max_ratio_elsewhere only: a limit in milliseconds holds on one machine.");
+  if (rule.metric == "pixels.farther" &&
+      (!rule.max || rule.min || ratio || rule.max_increase || rule.max_decrease))
+    node.complain("pixels.farther takes max alone: the share of pixels that may be farther from the truth.");
   if (!is_time(rule.metric) && rule.max_ratio_elsewhere)
     node.complain("max_ratio_elsewhere is for times (timing.*); '" + rule.metric + "' takes max_ratio.");
 }
@@ -167,6 +171,7 @@ Thresholds default_thresholds() {
   rule("timing.frame_ms").max_ratio = 1.1;
   rule("metrics.rmse").max_increase = 0.001;
   rule("metrics_matched.mask_bit_mismatch").max_increase = 1e-6;
+  rule("pixels.farther").max = 0;
   return out;
 }
 

@@ -35,7 +35,7 @@ struct KnownNames {
 
 // Throws InputError: place, what was found, what was expected, the nearest name.
 Thresholds read_thresholds(const JsonDocument& document, const KnownNames& known);
-// When there is no file: frame times by 10 % as they are, rmse by 0.001, mask bits by 1e-6.
+// When there is no file: frame times by 10 % as they are, rmse by 0.001, mask bits by 1e-6, no pixel farther.
 Thresholds default_thresholds();
 
 // The rule for one metric of one point: the most specific of those that match, by params, then scene, then

@@ -1,5 +1,6 @@
 #include "report/page.h"
 
+#include <algorithm>
 #include <cassert>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,20 @@ constexpr std::string_view generator = "<meta name=\"generator\" content=\"penum
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
     text.replace(at, from.size(), to);
+}
+
+std::string titled(std::string_view asset, std::string_view title) {
+  std::string page(report_asset(asset));
+  assert(is_report_page(page));
+  replace_all(page, "{{title}}", escape_html(title));
+  return page;
+}
+
+std::string script_of(bool (*wanted)(std::string_view name)) {
+  std::string script = "\"use strict\";\n";
+  for (const Asset& asset : report_assets())  // in the order in which CMakeLists.txt names them
+    if (asset.name.ends_with(".js") && wanted(asset.name)) script += asset.content;
+  return script;
 }
 
 }  // namespace
@@ -56,18 +71,19 @@ std::string script_literal(const nlohmann::json& value) {
   return text;
 }
 
-std::string index_html(std::string_view title) {
-  std::string page(report_asset("template.html"));
-  assert(is_report_page(page));
-  replace_all(page, "{{title}}", escape_html(title));
-  return page;
-}
+std::string index_html(std::string_view title) { return titled("template.html", title); }
+std::string comparison_html(std::string_view title) { return titled("comparison.html", title); }
 
 std::string report_script() {
-  std::string script = "\"use strict\";\n";
-  for (const Asset& asset : report_assets())  // in the order in which CMakeLists.txt names them
-    if (asset.name.ends_with(".js")) script += asset.content;
-  return script;
+  return script_of([](std::string_view name) { return !name.starts_with("comparison"); });
+}
+
+std::string comparison_script() {
+  return script_of([](std::string_view name) {
+    constexpr std::string_view shared[] = {"model.js",     "format.js", "svg.js",
+                                           "error_map.js", "zoom.js",   "stage.js"};
+    return name.starts_with("comparison") || std::ranges::find(shared, name) != std::end(shared);
+  });
 }
 
 std::string report_style() { return std::string(report_asset("report.css")); }

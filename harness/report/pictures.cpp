@@ -73,12 +73,12 @@ void link_or_copy(const fs::path& source, const fs::path& target) {
   if (e) throw WriteError(fmt::format("{}: cannot be written: {}", target.string(), e.message()));
 }
 
-void make_picture(const Job& job, const fs::path& run, const fs::path& target) {
+void make_picture(const Job& job, const fs::path& run, const fs::path& target, Reuse reuse) {
   const fs::path source = run / job.source;
   const fs::path reference = job.reference.empty() ? source : run / job.reference;
   for (const fs::path& file : {source, reference})
     if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: no such file", file.string()));
-  if (up_to_date(target, {source, reference})) return;
+  if (reuse == Reuse::up_to_date && up_to_date(target, {source, reference})) return;
   switch (job.kind) {
     case Kind::copy:
       link_or_copy(source, target);
@@ -156,7 +156,7 @@ class Planner {
   std::map<std::string, Job>& jobs_;
 };
 
-void run_jobs(std::map<std::string, Job>& jobs, const fs::path& run, const fs::path& out) {
+void run_jobs(std::map<std::string, Job>& jobs, const fs::path& run, const fs::path& out, Reuse reuse) {
   std::vector<std::pair<const std::string, Job>*> list;
   for (auto& job : jobs) {
     list.push_back(&job);
@@ -167,7 +167,7 @@ void run_jobs(std::map<std::string, Job>& jobs, const fs::path& run, const fs::p
   parallel_for(list.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       try {
-        make_picture(list[i]->second, run, out / list[i]->first);
+        make_picture(list[i]->second, run, out / list[i]->first, reuse);
       } catch (const InputError& e) {
         list[i]->second.failure = e.what();
       } catch (...) {
@@ -211,7 +211,7 @@ Rgb8Image error_picture(const ExrImage& reference, const ExrImage& test) {
 }
 
 nlohmann::json write_pictures(const fs::path& run, const fs::path& out, const nlohmann::json& points,
-                              std::size_t& files, std::vector<std::string>& warnings) {
+                              std::size_t& files, std::vector<std::string>& warnings, Reuse reuse) {
   std::map<std::string, Job> jobs;
   Planner planner(run, jobs);
   nlohmann::json by_point = nlohmann::json::array();
@@ -223,7 +223,7 @@ nlohmann::json write_pictures(const fs::path& run, const fs::path& out, const nl
       by_point.push_back(nlohmann::json::object());
     }
   }
-  run_jobs(jobs, run, out);
+  run_jobs(jobs, run, out, reuse);
   files = 0;
   for (const auto& [target, job] : jobs) {
     if (job.failure.empty())
@@ -235,6 +235,45 @@ nlohmann::json write_pictures(const fs::path& run, const fs::path& out, const nl
     for (auto it = pictures.begin(); it != pictures.end();)
       it = jobs.at(it->get<std::string>()).failure.empty() ? std::next(it) : pictures.erase(it);
   return by_point;
+}
+
+nlohmann::json write_differences(const nlohmann::json& images, const fs::path& baseline,
+                                 const fs::path& current, const fs::path& out, std::size_t& files,
+                                 std::vector<std::string>& warnings) {
+  std::map<std::string, Job> jobs;
+  nlohmann::json targets = nlohmann::json::array();
+  const auto visibility = [](const nlohmann::json& side) {
+    return side.contains("visibility") && side["visibility"].is_string()
+               ? fs::path(side["visibility"].get<std::string>())
+               : fs::path();
+  };
+  for (const nlohmann::json& both : images) {
+    targets.push_back(nullptr);
+    const fs::path before = visibility(both.at("baseline")), now = visibility(both.at("current"));
+    if (!is_exr(before) || !is_exr(now)) continue;
+    try {
+      const fs::path target = ("difference" / inside_run(now.string())).replace_extension(".png");
+      jobs.try_emplace(target.generic_string(), Job{Kind::error,
+                                                    fs::absolute(current / now),
+                                                    fs::absolute(baseline / inside_run(before.string())),
+                                                    {}});
+      targets.back() = target.generic_string();
+    } catch (const InputError& e) {
+      warnings.push_back(e.what());
+    }
+  }
+  run_jobs(jobs, {}, out, Reuse::nothing);
+  for (nlohmann::json& target : targets) {
+    if (target.is_null()) continue;
+    const Job& job = jobs.at(target.get<std::string>());
+    if (job.failure.empty()) {
+      ++files;
+    } else {
+      warnings.push_back(job.failure);
+      target = nullptr;
+    }
+  }
+  return targets;
 }
 
 }  // namespace penumbra

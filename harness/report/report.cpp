@@ -3,38 +3,20 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "report/files.h"
 #include "report/page.h"
 #include "report/pictures.h"
 
 namespace penumbra {
 namespace fs = std::filesystem;
+using report::read_text;
+using report::write_text;
 namespace {
 
 constexpr int known_schema_version = 1;
-
-std::string read_text(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(fmt::format("{}: cannot be read", path.string()));
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// Through a temporary and a rename, so that an interrupted report leaves no half file.
-void write_text(const fs::path& path, const std::string& text) {
-  const fs::path temporary = fs::path(path) += ".new";
-  std::ofstream out(temporary, std::ios::binary);
-  out << text;
-  out.close();
-  std::error_code e;
-  if (out) fs::rename(temporary, path, e);
-  if (!out || e) {
-    fs::remove(temporary, e);
-    throw WriteError(fmt::format("{}: cannot be written", path.string()));
-  }
-}
 
 nlohmann::json parse_file(const fs::path& path) {
   try {
@@ -110,24 +92,13 @@ std::string run_name(const nlohmann::json& run, const fs::path& folder) {
   return fs::absolute(folder).lexically_normal().filename().string();
 }
 
-void make_folder(const fs::path& out) {
-  const fs::path index = out / "index.html";
-  if (fs::exists(index) && !is_report_page(read_text(index)))
-    throw InputError(
-        fmt::format("{}: exists and is not a report; choose another folder with -o", index.string()));
-  std::error_code e;
-  fs::create_directories(out / "assets", e);
-  if (!e) fs::create_directories(out / "images", e);
-  if (e) throw WriteError(fmt::format("{}: cannot be made: {}", out.string(), e.message()));
-}
-
 }  // namespace
 
 ReportSummary write_report(const fs::path& run, const fs::path& out_or_empty) {
   const fs::path out = out_or_empty.empty() ? run / "report" : out_or_empty;
   nlohmann::json results = read_results(run);
   check_results(results, run);
-  make_folder(out);
+  report::make_folder(out);
 
   ReportSummary summary;
   summary.index = out / "index.html";

@@ -49,7 +49,8 @@
       f.setAttribute("tableValues", colours.map((c) => (c[k] / 255).toFixed(4)).join(" ")),
     );
   };
-  P.colour_bar = (range) => {
+  // ends: what the left end, the whole and the right end say.
+  P.colour_bar = (range, ends) => {
     const gradient = Array.from(
       { length: 33 },
       (_, i) =>
@@ -65,14 +66,12 @@
       {
         class: "colour-bar",
         role: "img",
-        "aria-label": `Colours from ${-range} (darker than the reference) to ${range} (lighter)`,
+        "aria-label": `Colours from ${-range} (${ends[0]}) to ${range} (${ends[2]})`,
       },
       P.element(
         "div",
         { class: "ends" },
-        P.element("span", {}, "test darker"),
-        P.element("span", {}, "test − reference"),
-        P.element("span", {}, "test lighter"),
+        ...ends.map((text) => P.element("span", {}, text)),
       ),
       P.element("div", {
         class: "gradient",

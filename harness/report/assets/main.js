@@ -43,6 +43,31 @@
         `The run had not ended: ${P.points.length}${typeof run.points === "number" ? ` of ${run.points}` : ""} points.`,
       ),
     );
+  // What speaks against the times.
+  const doubts = [
+    [(p) => p.timing?.drifts, "drifted while they were timed: heat, load or clock changed between the earlier and the later half"],
+    [(p) => p.timing?.repeatable === false, "give another output from frame to frame"],
+    [(p) => p.other_programs > 0.1, "were timed while other programs used more than a tenth of the processors"],
+  ];
+  for (const [doubtful, what] of doubts) {
+    const list = P.points.filter((p) => p.status === "ok" && doubtful(p));
+    if (!list.length) continue;
+    at("warnings").append(
+      P.element(
+        "details",
+        { class: "notice doubt" },
+        P.element("summary", {}, `${list.length} of ${P.points.length} points ${what}`),
+        P.element(
+          "ul",
+          {},
+          ...list.slice(0, 50).map((p) =>
+            P.element("li", {}, P.element("button", { class: "link", onclick: () => P.show_details(p) }, `${P.technique_label(p.technique)} · ${p.scene} · ${P.variant_text(p, P.swept_keys)}`)),
+          ),
+          list.length > 50 ? P.element("li", {}, "…") : null,
+        ),
+      ),
+    );
+  }
   if (P.data.warnings?.length)
     at("warnings").append(
       P.element(

@@ -13,20 +13,7 @@
     "frame",
     "seed",
   ];
-  const state = {
-    scene: null,
-    layer: "shaded",
-    mode: "side",
-    range: 0.1,
-    common: {},
-    tiles: [],
-    a: 0,
-    b: 1,
-    current: 0,
-    previous: 1,
-    split: 50,
-    timer: null,
-  };
+  const state = { ...P.stage_state(), scene: null, common: {} };
 
   const with_pictures = (scene) =>
     P.points.filter((p) => p.scene === scene && Object.keys(p.pictures).length);

@@ -1,31 +1,13 @@
-// The pictures of one scene: all techniques beside the reference, two under a slider, or several flicked in one place.
+// The pictures of one scene: all techniques beside the reference.
 (() => {
-  const layers = { shaded: "Shaded", visibility: "Visibility", error: "Signed error" };
+  const all_layers = {
+    shaded: { label: "Shaded" },
+    visibility: { label: "Visibility" },
+    error: { label: "Signed error", ends: ["test darker", "test − reference", "test lighter"] },
+  };
   const { state, common_keys, with_pictures, candidates, best_of, fill_tiles, refit_tiles } = P.tiles;
   const { source_of, name_of, variant_of } = P.tiles;
-  let host, stage, bar, common_row;
-
-  const image = (tile, more = {}) => {
-    const { src, coded } = source_of(tile);
-    if (!src) return P.element("span", { class: "missing" }, "no such picture");
-    return P.element("img", {
-      src,
-      alt: `${name_of(tile)}, ${variant_of(tile)}, ${layers[state.layer].toLowerCase()}`,
-      draggable: "false",
-      decoding: "sync",
-      ...more,
-      class: `${coded ? "coded" : ""} ${more.class ?? ""}`,
-    });
-  };
-  const view = (tile, ...children) => {
-    const [w, h] = tile.point.params.resolution ?? [1, 1];
-    return P.element(
-      "div",
-      { class: "view", style: `aspect-ratio:${w || 1}/${h || 1}` },
-      ...children,
-      P.element("i", { class: "cross" }),
-    );
-  };
+  let draw, common_row;
 
   const figures = (point) => {
     const time = P.stat(point, "frame_ms")?.median,
@@ -89,7 +71,7 @@
       P.element("span", { class: "figures" }, tile.technique ? figures(tile.point) : ""),
     );
 
-  const side_by_side = () => {
+  const add_select = () => {
     const add = P.element(
       "select",
       {
@@ -104,152 +86,9 @@
         P.element("option", { value: t }, P.technique_label(t)),
       ),
     );
-    return [
-      P.element(
-        "div",
-        { class: "tiles" },
-        ...state.tiles.map((tile, i) =>
-          P.element("figure", { class: "tile" }, view(tile, image(tile)), caption(tile, i)),
-        ),
-      ),
-      P.element("p", { class: "add" }, add),
-    ];
+    return P.element("p", { class: "add" }, add);
   };
 
-  const tile_options = () =>
-    state.tiles.map((tile, i) => [
-      String(i),
-      `${name_of(tile)}${tile.technique && variant_of(tile) ? ` (${variant_of(tile)})` : ""}`,
-    ]);
-  const tag = (side, tile) => P.element("span", { class: `tag ${side}` }, name_of(tile));
-  const slider = () => {
-    const a = state.tiles[state.a],
-      b = state.tiles[state.b];
-    const range = P.element("input", {
-      type: "range",
-      min: 0,
-      max: 100,
-      step: 0.5,
-      value: state.split,
-      class: "split",
-      "aria-label": "Where the two pictures meet",
-      oninput: () => {
-        state.split = Number(range.value);
-        frame.style.setProperty("--split", `${state.split}%`);
-      },
-    });
-    const handle = P.element("div", { class: "handle", "aria-hidden": "true" });
-    const frame = view(
-      a,
-      P.element("div", { class: "half right" }, image(b)),
-      P.element("div", { class: "half left" }, image(a)),
-      handle,
-      tag("left", a),
-      tag("right", b),
-    );
-    frame.style.setProperty("--split", `${state.split}%`);
-    handle.addEventListener("pointerdown", (event) => {
-      handle.setPointerCapture(event.pointerId);
-      event.stopPropagation();
-      handle.onpointermove = (e) => {
-        const r = frame.getBoundingClientRect();
-        range.value = String(Math.min(100, Math.max(0, (100 * (e.clientX - r.left)) / r.width)));
-        range.dispatchEvent(new Event("input"));
-      };
-    });
-    handle.addEventListener("pointerup", () => {
-      handle.onpointermove = null;
-    });
-    const pick = (key) => (v) => {
-      state[key] = Number(v);
-      draw();
-    };
-    return [
-      P.element(
-        "div",
-        { class: "controls" },
-        P.select("Left", tile_options(), String(state.a), pick("a")),
-        P.select("Right", tile_options(), String(state.b), pick("b")),
-      ),
-      P.element("div", { class: "single" }, frame, range),
-    ];
-  };
-
-  const show_flick = (index) => {
-    if (index !== state.current) [state.previous, state.current] = [state.current, index];
-    stage
-      .querySelectorAll(".flick img, .flick .missing")
-      .forEach((img, i) => img.classList.toggle("shown", i === state.current));
-    stage.querySelectorAll(".flick-list button").forEach((b, i) => {
-      b.setAttribute("aria-pressed", i === state.current);
-      b.classList.toggle("other", i === state.previous);
-    });
-    const name = stage.querySelector(".flick .tag");
-    if (name) name.textContent = name_of(state.tiles[state.current]);
-  };
-  const stop_timer = () => {
-    clearInterval(state.timer);
-    state.timer = null;
-  };
-  const flick = () => {
-    state.current = Math.min(state.current, state.tiles.length - 1);
-    state.previous = Math.min(state.previous, state.tiles.length - 1);
-    const frame = view(
-      state.tiles[state.current],
-      ...state.tiles.map((tile) => image(tile)),
-      tag("left", state.tiles[state.current]),
-    );
-    frame.classList.add("flick");
-    const auto = P.element(
-      "button",
-      {
-        type: "button",
-        "aria-pressed": "false",
-        onclick: () => {
-          if (state.timer) stop_timer();
-          else state.timer = setInterval(() => show_flick(state.previous), 600);
-          auto.setAttribute("aria-pressed", String(state.timer !== null));
-        },
-      },
-      "Alternate",
-    );
-    const list = P.element(
-      "div",
-      { class: "flick-list", role: "group", "aria-label": "Picture shown" },
-      ...tile_options().map(([, text], i) =>
-        P.element(
-          "button",
-          { type: "button", onclick: () => show_flick(i) },
-          P.element("kbd", {}, String(i + 1)),
-          text,
-        ),
-      ),
-    );
-    return [
-      P.element("div", { class: "single" }, frame),
-      P.element(
-        "div",
-        { class: "controls" },
-        list,
-        P.element(
-          "button",
-          { type: "button", class: "swap", onclick: () => show_flick(state.previous) },
-          P.element("kbd", {}, "Space"),
-          "swap the last two",
-        ),
-        auto,
-      ),
-    ];
-  };
-
-  const draw = () => {
-    stop_timer();
-    host.classList.toggle("coded-layer", state.layer === "error");
-    bar.hidden = state.layer !== "error";
-    const made = { side: side_by_side, slider, flick }[state.mode]();
-    stage.replaceChildren(...made);
-    if (state.mode === "flick") show_flick(state.current);
-  };
   const draw_common = () => {
     const list = with_pictures(state.scene);
     const keys = common_keys.filter((key) => P.values_of(list, key).length > 1);
@@ -280,38 +119,6 @@
     fill_tiles();
     draw();
   };
-  const draw_bar = () => {
-    P.set_error_range(state.range);
-    bar.replaceChildren(
-      P.select(
-        "Range",
-        [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01].map((r) => [String(r), `± ${r}`]),
-        String(state.range),
-        (v) => {
-          state.range = Number(v);
-          draw_bar();
-        },
-      ),
-      P.colour_bar(state.range),
-    );
-  };
-
-  const on_key = (event) => {
-    if (
-      /^(SELECT|INPUT|TEXTAREA)$/.test(event.target.tagName) ||
-      event.altKey ||
-      event.ctrlKey ||
-      event.metaKey
-    )
-      return;
-    const digit = /^[1-9]$/.test(event.key) ? Number(event.key) - 1 : -1;
-    if (state.mode === "flick" && event.key === " " && event.target.tagName !== "BUTTON")
-      show_flick(state.previous);
-    else if (state.mode === "flick" && digit >= 0 && digit < state.tiles.length) show_flick(digit);
-    else if (!P.zoom_key(event)) return;
-    event.preventDefault();
-  };
-
   P.build_viewer = (element) => {
     const scenes = P.scenes.filter((scene) => with_pictures(scene).length);
     if (!scenes.length) {
@@ -324,62 +131,31 @@
       );
       return;
     }
-    host = element;
-    const available = Object.entries(layers).filter(([key]) =>
-      P.points.some((p) => p.pictures[key] || (key === "error" && p.pictures.error_code)),
+    const layers = Object.fromEntries(
+      Object.entries(all_layers).filter(([key]) =>
+        P.points.some((p) => p.pictures[key] || (key === "error" && p.pictures.error_code)),
+      ),
     );
-    if (!available.some(([key]) => key === state.layer)) state.layer = available[0]?.[0] ?? "visibility";
-    stage = P.element("div", {
-      class: "stage",
-      tabindex: 0,
-      role: "group",
-      "aria-label": "Pictures; + and − zoom, arrows pan, 0 resets, digits and space choose in flick mode",
-    });
-    bar = P.element("div", { class: "controls range-bar" });
+    if (!layers[state.layer]) state.layer = Object.keys(layers)[0] ?? "visibility";
     common_row = P.element("div", { class: "inline" });
-    element.replaceChildren(
-      P.make_error_filter(),
-      P.element(
-        "div",
-        { class: "controls" },
+    draw = P.make_stage(element, {
+      state,
+      layers,
+      source_of,
+      name_of,
+      variant_of,
+      caption,
+      beside: add_select,
+      before: [
         P.choices(
           "Scene",
           scenes.map((s) => [s, s]),
           scenes[0],
           set_scene,
         ),
-        P.choices("Show", available, state.layer, (v) => {
-          state.layer = v;
-          draw();
-        }),
-        P.choices(
-          "As",
-          [
-            ["side", "Side by side"],
-            ["slider", "Slider"],
-            ["flick", "Flick"],
-          ],
-          state.mode,
-          (v) => {
-            state.mode = v;
-            draw();
-          },
-        ),
-        common_row,
-        P.element("div", { class: "corner" }, P.element("output", { class: "place" }), P.zoom_controls()),
-      ),
-      bar,
-      stage,
-      P.element(
-        "p",
-        { class: "note" },
-        "Double-click or Ctrl + wheel zooms, dragging pans; all pictures stay in step. Visibility is shown linearly (grey = V).",
-      ),
-    );
-    stage.addEventListener("keydown", on_key);
-    P.make_zoom_live(element);
-    draw_bar();
+      ],
+      after: [common_row],
+    });
     set_scene(scenes[0]);
-    P.on_scheme_change(draw);
   };
 })();
