@@ -23,9 +23,11 @@ target_compile_options(penumbra_options INTERFACE -Wall -Wextra -Wconversion -Ws
   $<$<CXX_COMPILER_ID:GNU>:-Wno-missing-field-initializers>
   $<$<BOOL:${PENUMBRA_WERROR}>:-Werror>
   $<$<BOOL:${PENUMBRA_SANITIZE}>:-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer>
+  $<$<BOOL:${PENUMBRA_FUZZ}>:-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer>
   $<$<BOOL:${PENUMBRA_COVERAGE}>:--coverage>)
 target_link_options(penumbra_options INTERFACE
   $<$<BOOL:${PENUMBRA_SANITIZE}>:-fsanitize=address,undefined>
+  $<$<BOOL:${PENUMBRA_FUZZ}>:-fsanitize=address,undefined>
   $<$<BOOL:${PENUMBRA_COVERAGE}>:--coverage>)
 
 # penumbra_library(NAME SOURCES a.cpp ... LINK lib ...): a static library of one part of the tree.

@@ -12,11 +12,8 @@
 #include "config/sweep.h"
 #include "core/error.h"
 #include "run/journal.h"
-#include "run/latex.h"
-#include "run/results.h"
-#include "run/table.h"
 #include "scene/scene_file.h"
-#include "techniques/registry.h"
+#include "tests/fuzz/registry.h"
 
 namespace penumbra::test {
 namespace {
@@ -55,8 +52,7 @@ void reads_or_refuses(Read read) {
 }  // namespace
 
 void fuzz_configs(const std::string& text) {
-  static const Registry registry = all_techniques();
-  reads_or_refuses([&] { parse_sweep(JsonDocument::parse(text, "c.json"), registry, "fuzz"); });
+  reads_or_refuses([&] { parse_sweep(JsonDocument::parse(text, "c.json"), fuzz_registry(), "fuzz"); });
 }
 
 void fuzz_scenes(const std::string& text) {
