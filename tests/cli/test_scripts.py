@@ -44,6 +44,19 @@ class Equal(Folder):
         self.assertGreater(tries[row["value"] - 1], 1)
         self.assertLessEqual(row["ray_tracing"]["rmse"], 0.04)
 
+    # The comparison of light samples at one frame rate: how many rays buy the time of the other technique.
+    def test_equal_time_gives_frame_rate_mask_and_number_of_rays(self):
+        config = self.write("c.json", {"scene": "torus_knot", "resolution": 32, "mask_size": 8,
+                                       "techniques": ["ray_tracing", "gears"], "reference": {"light_samples": 0},
+                                       "measure": {"warmup": 0, "repetitions": 3, "min_time_s": 0}})
+        result = call("equal", config, "--technique", "ray_tracing", "--vary", "light_samples", "--range", 1, 4, "--time-of",
+                      "gears")
+        self.assertIn(result.returncode, (0, 1), result.stderr)  # 1: not even one ray is as fast
+        head, row = result.stdout.splitlines()
+        for column in ("scene", "fps", "light_samples of ray_tracing", "gears ms", "light samples of gears"):
+            self.assertIn(column, head)
+        self.assertRegex(row, r"^torus_knot +[0-9.]+  .* 8x8 = 64$")
+
     def test_wrong_arguments_are_refused(self):
         config = self.write("c.json", {"scene": "torus_knot"})
         for goal in (("--error", "metrics.rmse"), ("--range", 5, 5)):
@@ -60,7 +73,7 @@ class GateQuality(Folder):
         def point(technique, ms):
             times = [ms * rng.lognormvariate(0, spread) * (1.5 if rng.random() < 0.05 else 1) for _ in range(40)]
             return {"id": technique, "key": technique, "technique": technique, "scene": "s", "frame": 0, "params": {},
-                    "status": "ok", "timing": {"frame_ms": {"median": ms, "samples": times}}, "metrics": {"rmse": 0.01},
+                    "status": "ok", "timing": {name: {"median": ms, "samples": times} for name in ("frame_ms", "cpu_ms")}, "metrics": {"rmse": 0.01},
                     "metrics_matched": {"mask_bit_mismatch": 0}}
         points = [point(t, ms) for t, ms in (("ray_tracing", 30), ("gears", 20), ("shadow_map", 5), ("line_space", 9))]
         return self.write("results.json", {"schema_version": 1, "run": {}, "points": points})
