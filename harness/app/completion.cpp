@@ -117,7 +117,8 @@ _penumbra() {
   compadd -- $candidates
   _files
 }
-compdef _penumbra penumbra
+# A file of $fpath is read when it is first needed, and then has to answer at once.
+if [[ $zsh_eval_context[-1] == loadautofunc ]]; then _penumbra "$@"; else compdef _penumbra penumbra; fi
 )sh";
   return filled(script, {{"@DESCRIPTIONS@", descriptions}, {"@CASES@", cases}});
 }
