@@ -16,12 +16,16 @@ using testing::BruteForce;
 using testing::Rendered;
 using testing::Stage;
 
-// Closed boxes and a soup of triangles over a ground.
+// A closed box and a soup of triangles, one instance, over a ground, another: planar shadows need a flat one.
 Frame scene(const Light& light) {
   Frame f;
   testing::add_ground(f.geometry, 2);
+  const std::size_t ground = f.geometry.triangle_count();
   testing::add_box(f.geometry, {-0.6F, 0.2F, -0.5F}, {-0.1F, 0.9F, 0.1F});
   testing::add_soup(f.geometry, {-0.8F, 0.1F, -0.8F}, {0.8F, 1, 0.8F}, 120, 0.15F, 3);
+  f.geometry.triangle_instance.assign(f.geometry.triangle_count(), 1);
+  std::fill_n(f.geometry.triangle_instance.begin(), ground, 0U);
+  f.geometry.instance_albedo.assign(2, {0.5F, 0.5F, 0.5F});
   f.light = light;
   f.camera = testing::camera_at({0, 1.5F, 3.5F}, {0, 0.6F, 0});
   return f;

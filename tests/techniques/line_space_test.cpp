@@ -59,7 +59,7 @@ TEST(LineSpace, NeverLightsWhatIsBlockedBeyondTheStartNode) {
   std::uniform_real_distribution<float> unit(-1, 1);
   const auto point = [&](float reach) { return Vec3f{unit(random), unit(random), unit(random)} * reach; };
   for (const auto [n, d] : {std::array{4, 4}, {5, 4}, {6, 3}, {7, 3}, {8, 3}, {2, 5}, {10, 2}, {3, 1}})
-    for (const auto [cells, start] :
+    for (const auto& [cells, start] :
          {std::pair{line_space::Params::Cells::cubic, line_space::Params::Start::node},
           {line_space::Params::Cells::fitted, line_space::Params::Start::node},
           {line_space::Params::Cells::cubic, line_space::Params::Start::neighbours},
