@@ -118,10 +118,13 @@ nlohmann::json Pictures::write(const PointRun& run, const Output& output, std::s
   }
   if (wanted("shaded")) {
     shaded(images, "shaded", folder, view, frame, output.visibility, output.cosines);
-    if (std::filesystem::exists(root_ / truth_folder / "shaded.png"))
+    // Whoever comes first writes the reference's; each point names both files.
+    if (std::filesystem::exists(root_ / truth_folder / "shaded.png")) {
       images["reference_shaded"] = truth_folder + "/shaded.png";
-    else
+      images["reference_shaded_exr"] = truth_folder + "/shaded.exr";
+    } else {
       shaded(images, "reference_shaded", truth_folder, view, frame, truth.visibility);
+    }
   }
   if (wanted("error")) {
     images["error"] = make(folder, "error.png");

@@ -155,7 +155,7 @@ COMP_CWORD={len(words)}; _penumbra; printf '%s\\n' "${{COMPREPLY[@]}}" """
         self.assertEqual(self.bash("comp"), ["compare", "completion"])
         self.assertIn("--any-machine", self.bash("compare", "--a"))
         self.assertIn("--device", self.bash("run", "--dev"))
-        self.assertEqual(self.bash("render", "torus"), ["torus_knot"])
+        self.assertEqual(self.bash("render", "bird"), ["bird_nest"])
         self.assertEqual(self.bash("describe", "ray_t"), ["ray_tracing"])
         self.assertEqual(self.bash("baseline", "u"), ["update"])
         self.assertIn("quick", self.bash("run", "qui"))
@@ -170,7 +170,7 @@ COMP_CWORD={len(words)}; _penumbra; printf '%s\\n' "${{COMPREPLY[@]}}" """
             return [candidate.split("\t")[0] for candidate in result.stdout.splitlines()]
         self.assertEqual(fish("penumbra comp"), ["compare", "completion"])
         self.assertEqual(fish("penumbra run --dev"), ["--device"])
-        self.assertEqual(fish("penumbra render torus"), ["torus_knot"])
+        self.assertEqual(fish("penumbra render bird"), ["bird_nest"])
         self.assertEqual(fish("penumbra baseline u"), ["update"])
 
     # The functions that zsh's completion system has, made to print what they are given.
