@@ -53,8 +53,7 @@ json to_json(const TechniqueInfo& info) {
   for (const ParamInfo& p : info.params) params.push_back(to_json(p));
   return {{"name", info.name},           {"title", info.title},     {"sources", info.sources},
           {"lights", light_names(info)}, {"sampled", info.sampled}, {"residence", residence_of(info)},
-          {"choosing", info.choosing},
-          {"parameters", params}};
+          {"choosing", info.choosing},   {"parameters", params}};
 }
 
 void print_param(const ParamInfo& p) {

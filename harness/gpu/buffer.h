@@ -54,7 +54,8 @@ class Buffer {
 };
 
 // The vec4 of a buffer for texelFetch (ImageUse::texels): on lavapipe several times cheaper than reading them
-// by address, and cheaper than from an image, which has levels, rows and tiles to find; and nothing is copied.
+// by address, and cheaper than from an image, which has levels, rows and tiles to find; and nothing is
+// copied.
 class TexelView {
  public:
   TexelView() = default;

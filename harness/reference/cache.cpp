@@ -30,7 +30,8 @@ Header header_for(const std::filesystem::path& entry, int width, int height, con
   Header h;
   h.width = static_cast<uint32_t>(width), h.height = static_cast<uint32_t>(height);
   h.payload_bytes = payload.size();
-  const std::string checksum = Hasher().text(entry.filename().string()).bytes(payload.data(), payload.size()).hex();
+  const std::string checksum =
+      Hasher().text(entry.filename().string()).bytes(payload.data(), payload.size()).hex();
   std::memcpy(h.checksum, checksum.data(), sizeof h.checksum);
   return h;
 }
@@ -66,7 +67,8 @@ std::string defect(const std::filesystem::path& entry, const std::string& conten
   if (found.width != expected.width || found.height != expected.height) return "is of another size";
   if (found.payload_bytes != payload_bytes) return "is damaged";
   if (content.size() - sizeof(Header) != payload_bytes) return "is truncated";
-  if (std::memcmp(found.checksum, expected.checksum, sizeof found.checksum) != 0) return "is damaged, or another one's";
+  if (std::memcmp(found.checksum, expected.checksum, sizeof found.checksum) != 0)
+    return "is damaged, or another one's";
   return "";
 }
 

@@ -86,13 +86,13 @@ struct TechniqueInfo {
   std::string name, title;
   std::vector<std::string> sources;  // keys of techniques/references.bib, with the section: "GEARS, A.1"
   std::vector<ParamInfo> params;
-  std::vector<LightKind> lights;  // kinds it can take
+  std::vector<LightKind> lights;      // kinds it can take
   std::vector<std::string> choosing;  // when to prefer it to others, in whole sentences; for `describe`
-  bool sampled = false;           // uses the light samples and returns masks; else the light's centre or
-                                  // shape: the axes of light samples make no copies
-  bool rotates = false;           // takes light samples that each pixel moves (LightSamples::move)
-  bool sphere_as_disc = false;    // takes a sphere for the disc through its centre that faces the view
-                                  // sample, and is judged against that as well
+  bool sampled = false;               // uses the light samples and returns masks; else the light's centre or
+                                      // shape: the axes of light samples make no copies
+  bool rotates = false;               // takes light samples that each pixel moves (LightSamples::move)
+  bool sphere_as_disc = false;        // takes a sphere for the disc through its centre that faces the view
+                                      // sample, and is judged against that as well
   Residence residence = Residence::device;
   // Where that depends on the parameters (gears' backend).
   std::function<Residence(const ParamValues&)> residence_of;

@@ -1,6 +1,6 @@
-// Which of the exact techniques on the host is expected to be the fastest, by one figure of a scene: the share
-// of its edges that can be silhouettes for some point of the light (`potential_silhouette_share` among the
-// counters of depth_complexity_sampling).
+// Which of the exact techniques on the host is expected to be the fastest, by one figure of a scene: the
+// share of its edges that can be silhouettes for some point of the light (`potential_silhouette_share` among
+// the counters of depth_complexity_sampling).
 #pragma once
 #include <string>
 #include <vector>

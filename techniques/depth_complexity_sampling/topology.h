@@ -38,7 +38,7 @@ using Array = std::vector<T, Unfilled<T>>;
 struct EdgeTopology {
   Array<uint32_t> mesh_vertex;  // of a welded vertex: a mesh vertex at its position
   Array<uint32_t> corners;      // welded vertices, 3 per triangle
-  Array<Edge> edges;  // neighbours in space are neighbours in the list; the long ones come last
+  Array<Edge> edges;            // neighbours in space are neighbours in the list; the long ones come last
   std::size_t open = 0, inconsistent = 0, non_manifold = 0, dropped_faces = 0;  // for the room's counters
 
   uint64_t bytes() const {

@@ -25,7 +25,8 @@ class Backend final : public Technique {
       return fmt::format("gears takes at most {} light samples; these are {}.", most_light_samples,
                          c.light_samples->count());
     if (c.light_samples->move != PixelMove::none)
-      return "the CPU backend of gears takes one set of light samples for all pixels, not one that each pixel "
+      return "the CPU backend of gears takes one set of light samples for all pixels, not one that each "
+             "pixel "
              "moves; backend=vulkan moves regular grids.";
     return std::nullopt;
   }

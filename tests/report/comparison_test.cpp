@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using test::ScratchFolder;
 
-// The same run again, but for: GEARS' first point twice as slow; its second darker in a corner of its picture,
-// and so its rmse higher; the third gone.
+// The same run again, but for: GEARS' first point twice as slow; its second darker in a corner of its
+// picture, and so its rmse higher; the third gone.
 void write_worse_run(const fs::path& from, const fs::path& to) {
   fs::copy(from, to, fs::copy_options::recursive);
   json results = json::parse(test::read_file(from / "results.json"));
