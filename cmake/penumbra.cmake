@@ -25,6 +25,8 @@ target_compile_options(penumbra_options INTERFACE -Wall -Wextra -Wconversion -Ws
   $<$<BOOL:${PENUMBRA_SANITIZE}>:-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer>
   $<$<BOOL:${PENUMBRA_FUZZ}>:-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer>
   $<$<BOOL:${PENUMBRA_COVERAGE}>:--coverage>)
+# xxHash forces inlining that GCC 14 refuses with sanitizers at -Og.
+target_compile_definitions(penumbra_options INTERFACE $<$<BOOL:${PENUMBRA_SANITIZE}>:XXH_NO_INLINE_HINTS=1>)
 target_link_options(penumbra_options INTERFACE
   $<$<BOOL:${PENUMBRA_SANITIZE}>:-fsanitize=address,undefined>
   $<$<BOOL:${PENUMBRA_FUZZ}>:-fsanitize=address,undefined>

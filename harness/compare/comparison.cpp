@@ -17,6 +17,9 @@ namespace {
 using nlohmann::json;
 using Figures = std::map<std::string, json>;
 
+// Beyond it times tell of the neighbours; the table and the report of a run warn of the same share.
+constexpr double disturbing_share = 0.1;
+
 std::vector<double> samples_of(const json& stat) { return stat.at("samples").get<std::vector<double>>(); }
 
 // PSNR of equal images has no value in JSON; here it is the best there is.
@@ -51,6 +54,7 @@ class Judge {
     std::size_t finding;
     double limit, slower, faster;
     std::size_t n, m;
+    double others;  // the largest share of the processors that other programs had in one of the measurements
   };
 
   static std::optional<std::size_t> place(const RunResults& results, const json* point) {
@@ -188,9 +192,17 @@ class Judge {
     if (!thresholds_.anchor.empty() && !hold_against(pair, anchor, before, now, f)) return;
     const std::optional<double> limit = limit_between(pair, r, f);
     if (!limit) return;
+    double others = std::max(others_beside(*pair.baseline), others_beside(*pair.current));
+    if (f.against_anchor)
+      others = std::max({others, others_beside(*anchor->baseline), others_beside(*anchor->current)});
     tests_.push_back({static_cast<std::size_t>(&f - out_.findings.data()), *limit,
                       mann_whitney_greater(before, now), mann_whitney_greater(now, before), before.size(),
-                      now.size()});
+                      now.size(), others});
+  }
+
+  static double others_beside(const json& point) {
+    const auto share = point.find("other_programs");
+    return share != point.end() && share->is_number() ? share->get<double>() : 0;
   }
 
   // Turns both times into multiples of the anchor's; false when there is nothing to be judged.
@@ -255,7 +267,16 @@ class Judge {
     f.verdict = Verdict::pass;
     const std::string of =
         f.against_anchor ? fmt::format(" of its ratio to {}", thresholds_.anchor) : std::string();
-    if (ratio > t.limit && slower <= alpha) {
+    const bool disturbed = t.others > disturbing_share;
+    const std::string meanwhile =
+        fmt::format("; meanwhile other programs had {:.0f} % of the processors", 100 * t.others);
+    if (disturbed && ((ratio > t.limit && slower <= alpha) || (ratio < 1 / t.limit && faster <= alpha))) {
+      // Techniques lose unlike parts of their speed to a neighbour, of processor time too: no ratio forgives
+      // it.
+      f.verdict = ratio > 1 ? Verdict::ambiguous : Verdict::pass;
+      f.message = fmt::format("{:.3f} times the baseline{} (p = {:.2g}){}", ratio, of,
+                              std::min(slower, faster), meanwhile);
+    } else if (ratio > t.limit && slower <= alpha) {
       f.verdict = Verdict::regressed;
       f.message = fmt::format("{:.3f} times the baseline{}, more than {:.3f} (p = {:.2g})", ratio, of,
                               t.limit, slower);

@@ -15,7 +15,7 @@ enum class Verdict {
   pass,
   improved,
   regressed,
-  ambiguous,  // a time beyond its factor that may be chance
+  ambiguous,  // a time beyond its factor that may be chance, or the work of other programs
   missing,    // the baseline has it, the current run has not
   added,      // the current run has it, the baseline has not: reported only
   unjudged    // no rule, or none that holds between these machines: reported only

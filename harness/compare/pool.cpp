@@ -49,6 +49,11 @@ json pooled_point(const std::vector<const json*>& points) {
   std::vector<const json*> timings;
   for (const json* point : points) timings.push_back(&point->at("timing"));
   out["timing"] = pooled_timing(timings);
+  std::vector<double> others;
+  for (const json* point : points)
+    if (const auto share = point->find("other_programs"); share != point->end() && share->is_number())
+      others.push_back(*share);
+  if (!others.empty()) out["other_programs"] = median(others);
   return out;
 }
 

@@ -181,7 +181,7 @@ RunResults read_results(const fs::path& path) {
 json essential(const json& record) {
   json out;
   for (const char* key :
-       {"id", "key", "technique", "scene", "frame", "params", "status", "message", "machine"})
+       {"id", "key", "technique", "scene", "frame", "params", "status", "message", "machine", "other_programs"})
     if (record.contains(key)) out[key] = record.at(key);
   if (record.at("status") != "ok") return out;
   out["timing"] = stats_only(record.value("timing", json()));

@@ -62,7 +62,8 @@ json expanded(const Sweep& sweep) {
                 {"repetitions", sweep.measure.repetitions},
                 {"min_time_s", sweep.measure.min_time_s},
                 {"max_time_s", sweep.measure.max_time_s},
-                {"target_interval", sweep.measure.target_interval}}},
+                {"target_interval", sweep.measure.target_interval},
+                {"counters", sweep.measure.counters}}},
               {"frames", sweep.frames},
               {"seed", sweep.seed}};
   if (!sweep.lights.empty()) out["light"] = names_to_json(sweep.lights);

@@ -19,6 +19,8 @@ struct MeasureSettings {
   // Go on until the median's 95 % interval reaches no further than this share of the median to either side,
   // or max_time_s is over; 0: no such target.
   double target_interval = 0;
+  // Statistics of the technique's own: never in the times, but some cost more than the frame.
+  bool counters = true;
 };
 
 // Everything that determines one result.

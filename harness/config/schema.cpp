@@ -93,7 +93,8 @@ json measure() {
                  {"repetitions", integer(1, 100000)},
                  {"min_time_s", number(0, 86400)},
                  {"max_time_s", number(0.001, 86400)},
-                 {"target_interval", number(0, 1)}});
+                 {"target_interval", number(0, 1)},
+                 {"counters", {{"type", "boolean"}}}});
 }
 
 json axes(const Registry& registry) {

@@ -91,12 +91,14 @@ void read_param_axis(const JsonNode& root, const std::string& axis, Sweep& sweep
 }
 
 void read_measure(const JsonNode& node, MeasureSettings& measure) {
-  node.allow_only({"warmup", "repetitions", "min_time_s", "max_time_s", "target_interval"}, "measure");
+  node.allow_only({"warmup", "repetitions", "min_time_s", "max_time_s", "target_interval", "counters"},
+                  "measure");
   if (const auto n = node.find("warmup")) measure.warmup = static_cast<int>(n->integer(0, 1000));
   if (const auto n = node.find("repetitions")) measure.repetitions = static_cast<int>(n->integer(1, 100000));
   if (const auto n = node.find("min_time_s")) measure.min_time_s = n->number(0, 86400);
   if (const auto n = node.find("max_time_s")) measure.max_time_s = n->number(0.001, 86400);
   if (const auto n = node.find("target_interval")) measure.target_interval = n->number(0, 1);
+  if (const auto n = node.find("counters")) measure.counters = n->boolean();
   if (measure.max_time_s < measure.min_time_s)
     node.complain(fmt::format("found max_time_s {} below min_time_s {}, expected it above.",
                               measure.max_time_s, measure.min_time_s));

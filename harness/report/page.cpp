@@ -80,8 +80,8 @@ std::string report_script() {
 
 std::string comparison_script() {
   return script_of([](std::string_view name) {
-    constexpr std::string_view shared[] = {"model.js",     "format.js", "svg.js",
-                                           "error_map.js", "zoom.js",   "stage.js"};
+    constexpr std::string_view shared[] = {"model.js", "format.js", "svg.js", "error_map.js",
+                                           "zoom.js",  "stage.js",  "rows.js"};
     return name.starts_with("comparison") || std::ranges::find(shared, name) != std::end(shared);
   });
 }

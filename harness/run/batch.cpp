@@ -175,7 +175,7 @@ std::optional<BatchRunner::Prepared> BatchRunner::try_prepare(const Point& point
   prepared.record["params"]["light_size"] = short_double(prepared.run->lit().current.light.size());
   std::optional<std::string> reason = prepared.run->unsupported();
   try {
-    if (!reason) prepared.run->prepare();
+    if (!reason) prepared.run->prepare(settings_.measure.counters);
   } catch (const UnsupportedError& e) {
     reason = e.what();
   }

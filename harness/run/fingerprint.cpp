@@ -12,6 +12,7 @@ std::string fingerprint(const Point& point, const MeasuredWith& with, const Work
   hash.text(with.device).text(with.driver_version).value(settings.reference_samples).value(settings.threads);
   hash.value(settings.frames).value(m.warmup).value(m.repetitions).value(m.min_time_s).value(m.max_time_s);
   hash.value(m.target_interval);
+  if (!m.counters) hash.value(m.counters);
   for (const std::string& image : settings.images) hash.text(image);
   return hash.hex();
 }

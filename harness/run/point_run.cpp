@@ -80,7 +80,7 @@ void PointRun::step(const char* stage) {
   heartbeat_.limit(limits_.frame_s + limits_.first_call_s);
 }
 
-void PointRun::prepare() {
+void PointRun::prepare(bool with_counters) {
   allocate_output();
   gpu::Device& device = passes_.device();
   const uint64_t device_before = device.allocated_bytes();
@@ -120,7 +120,7 @@ void PointRun::prepare() {
     CostTimer timer(costs_, "counters");  // a technique may render once more to count what it does
     output_.claimed = technique_->evaluated_mask();
     output_.cosines = technique_->cosines();
-    output_.counters = technique_->counters();
+    if (with_counters) output_.counters = technique_->counters();
     passes_.take_times();
   }
   memory_.structure_bytes = technique_->structure_bytes();

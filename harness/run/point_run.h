@@ -66,7 +66,7 @@ class PointRun {
   // A full sentence when the technique cannot do this case.
   std::optional<std::string> unsupported() const;
   // Set-up, build, first frame; afterwards output() and memory() say what came. Throws PointError.
-  void prepare();
+  void prepare(bool with_counters = true);
   Output& output() { return output_; }
   // The frame of another set of an accumulation, after prepare(), which took set 0; output() is then its own.
   // Throws PointError.

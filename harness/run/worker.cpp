@@ -99,7 +99,8 @@ nlohmann::json to_json(const WorkerSettings& s) {
             {"repetitions", s.measure.repetitions},
             {"min_time_s", s.measure.min_time_s},
             {"max_time_s", s.measure.max_time_s},
-            {"target_interval", s.measure.target_interval}}}};
+            {"target_interval", s.measure.target_interval},
+            {"counters", s.measure.counters}}}};
 }
 
 WorkerSettings worker_settings_from_json(const nlohmann::json& j) {
@@ -115,8 +116,8 @@ WorkerSettings worker_settings_from_json(const nlohmann::json& j) {
   s.group_size = j.at("group_size");
   s.first_call_grace_s = j.at("first_call_grace_s");
   const auto& m = j.at("measure");
-  s.measure = {m.at("warmup"), m.at("repetitions"), m.at("min_time_s"), m.at("max_time_s"),
-               m.at("target_interval")};
+  s.measure = {m.at("warmup"),     m.at("repetitions"),     m.at("min_time_s"),
+               m.at("max_time_s"), m.at("target_interval"), m.at("counters")};
   return s;
 }
 

@@ -1,4 +1,4 @@
-"""scripts/equal and scripts/gate_quality."""
+"""scripts/equal, scripts/gate_quality and scripts/alternate."""
 import importlib.machinery
 import importlib.util
 import json
@@ -6,7 +6,7 @@ import random
 import subprocess
 import unittest
 
-from test_cli import SOURCE, Folder
+from test_cli import PROGRAM, SOURCE, Folder
 
 
 def script(name):
@@ -88,6 +88,36 @@ class GateQuality(Folder):
         result = call("gate_quality", "--pairs", 10, "resample", self.results(0.4))
         self.assertEqual(result.returncode, 1, result.stdout)
         self.assertLess(json.loads(result.stdout)["slowdowns"], 9)
+
+    def test_sides_take_turns(self):
+        sides = script("gate_quality").sides
+        a, b = sides(list(range(24)), False, random.Random(3))
+        self.assertEqual([sorted(turn) for turn in zip(a, b)], [[i, i + 1] for i in range(0, 24, 2)])
+        self.assertNotEqual(a, list(range(0, 24, 2)))
+        self.assertEqual(sides([1, 2, 3, 4], True, random.Random(3)), ([1, 2], [3, 4]))
+
+
+class Alternate(Folder):
+    def test_two_programs_take_turns_and_are_compared(self):
+        config = self.write("c.json", {"scene": "torus_knot", "resolution": 16, "mask_size": 2, "techniques": ["ray_tracing"],
+                                       "reference": {"light_samples": 0}, "images": [],
+                                       "measure": {"warmup": 0, "repetitions": 1, "min_time_s": 0}})
+        thresholds = self.write("t.json", {"thresholds": [{"metric": "metrics_matched.mask_bit_mismatch", "max": 0}]})
+        arguments = (PROGRAM, PROGRAM, config, "--out", self.folder / "turns", "--runs", 2, "--thresholds", thresholds)
+        result = call("alternate", *arguments)
+        self.assertEqual(result.returncode, 0, result.stderr + result.stdout)
+        turns = [line.split(",")[0] for line in result.stderr.splitlines() if " of 2" in line]
+        self.assertEqual([sorted(turns[:2]), sorted(turns[2:])], 2 * [["base", "current"]])
+        self.assertEqual(sorted(p.name for p in (self.folder / "turns" / "base").iterdir()), ["run000", "run001"])
+        # What is there stays: nothing runs again.
+        again = call("alternate", *arguments)
+        self.assertEqual((again.returncode, again.stdout), (0, result.stdout))
+        self.assertNotIn(" of 2", again.stderr)
+
+    def test_a_program_that_is_not_there_is_refused(self):
+        result = call("alternate", "/no/penumbra", PROGRAM, "c.json", "--out", self.folder / "x")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("/no/penumbra: no such program", result.stderr)
 
 
 if __name__ == "__main__":

@@ -109,6 +109,23 @@ TEST(Time, NeedsTheFactorAndTheSignificance) {
       << finding(few, "gears", "timing.frame_ms").message;
 }
 
+TEST(Time, BesideOtherProgramsIsNeverCalledRegressedOrImproved) {
+  const auto verdict = [](double before, double now, double others_before, double others_now) {
+    json a = point("gears", times(before)), b = point("gears", times(now, 12, 2));
+    a["other_programs"] = others_before, b["other_programs"] = others_now;
+    return compare(run_of({a}), run_of({b}), thresholds(raw_rule));
+  };
+  EXPECT_EQ(time_verdict(verdict(10, 11, 0.05, 0.05)), Verdict::regressed);
+  const Comparison disturbed = verdict(10, 11, 0.05, 0.47);
+  EXPECT_EQ(time_verdict(disturbed), Verdict::ambiguous);
+  EXPECT_NE(finding(disturbed, "gears", "timing.frame_ms").message.find("other programs had 47 %"),
+            std::string::npos)
+      << finding(disturbed, "gears", "timing.frame_ms").message;
+  EXPECT_EQ(time_verdict(verdict(10, 11, 0.47, 0.05)), Verdict::ambiguous);
+  EXPECT_EQ(time_verdict(verdict(11, 10, 0.47, 0.05)), Verdict::pass);
+  EXPECT_EQ(time_verdict(verdict(10, 10, 0.47, 0.05)), Verdict::pass);
+}
+
 TEST(Time, IsCorrectedForTheNumberOfPoints) {
   const auto verdict = [](int others) {
     std::vector<json> before = {point("gears", times(10, 7))}, now = {point("gears", times(11, 7, 2))};

@@ -30,7 +30,7 @@ def disturb(config, out, resume, delay, victim):
         for pid in pids:
             os.kill(pid, signal.SIGKILL)
             killed = True
-    errors = process.communicate(timeout=120)[1].decode()
+    errors = process.communicate(timeout=900)[1].decode()
     assert "internal error" not in errors, errors
     assert process.returncode in (0, 1, -signal.SIGKILL), (process.returncode, errors)
     return killed

@@ -37,6 +37,7 @@ TEST(Fingerprint, ChangesWithEachOfItsParts) {
       [](All& a) { a.settings.measure.min_time_s += 1; },
       [](All& a) { a.settings.measure.max_time_s += 1; },
       [](All& a) { a.settings.measure.target_interval += 0.01; },
+      [](All& a) { a.settings.measure.counters = false; },
   };
   std::set<std::string> seen{All().hash()};
   EXPECT_EQ(All().hash(), All().hash());

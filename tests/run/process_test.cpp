@@ -4,8 +4,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "core/error.h"
@@ -170,6 +173,15 @@ TEST(Run, ChangingOutputIsFlagged) {
   EXPECT_EQ(sweep.record("p0")["timing"]["repeatable"], false);
   // Judged is the first frame, whatever came after: V = 1.
   EXPECT_EQ(sweep.record("p0")["metrics"]["zones"]["lit"]["mae"], 0);
+}
+
+TEST(Run, CountersAreLeftOutOnRequest) {
+  Sweep sweep;
+  sweep.plan.measure = {1, 2, 0, 1};
+  sweep.plan.measure.counters = false;
+  sweep.add({}).run();
+  EXPECT_EQ(sweep.record("p0")["status"], "ok");
+  EXPECT_TRUE(sweep.record("p0")["counters"].empty());
 }
 
 TEST(Run, TheTimeLimitEndsMeasuringButKeepsOneSample) {
@@ -342,8 +354,12 @@ TEST(Run, ResumesAfterTheSupervisorWasKilled) {
     sweep.run();
     ::_exit(0);
   }
-  for (int i = 0; i < 600 && sweep.frames_begun(0.375) == 0; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const auto journal_lines = [&sweep] {
+    std::ifstream in(sweep.out() / "points.jsonl");
+    return std::count(std::istreambuf_iterator<char>(in), {}, '\n');
+  };
+  for (int i = 0; i < 6000 && journal_lines() < 2; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
   const RunOutcome o = sweep.run(true);

@@ -1,7 +1,5 @@
-// The table of verdicts, a row for each point. Only the rows in sight exist in the document.
+// The table of verdicts, a row for each point.
 (() => {
-  const row_height = 33,
-    margin_rows = 12;
   const badness = ["regressed", "missing", "ambiguous", "improved", "added", "pass", "unjudged"];
   P.verdict_order = badness;
 
@@ -78,26 +76,19 @@
       P.element("thead", {}, P.element("tr", {}, ...columns.map((c, i) => P.element("th", { scope: "col", class: i > 3 ? "num" : null }, P.element("span", { class: "head" }, c[0]))))),
       body,
     );
-    const spacer = (rows) =>
-      P.element("tr", { class: "spacer", "aria-hidden": "true" }, P.element("td", { colspan: columns.length, style: `height:${rows * row_height}px` }));
-    const draw_rows = () => {
-      const first = Math.max(0, Math.floor(scroller.scrollTop / row_height) - margin_rows);
-      const last = Math.min(shown.length, first + Math.ceil((scroller.clientHeight || 600) / row_height) + 2 * margin_rows);
-      const focused = body.contains(document.activeElement) ? document.activeElement.dataset?.row : undefined;
-      body.replaceChildren(
-        ...(first ? [spacer(first)] : []),
-        ...shown.slice(first, last).map((p, i) =>
-          P.element(
-            "tr",
-            { tabindex: 0, "data-row": first + i, "data-point": p.index, "aria-selected": String(p === chosen) },
-            ...columns.map((c) => c[1](p)),
-          ),
+    const scroller = P.element("div", { class: "table-scroll", tabindex: -1 }, table);
+    const rows = P.rows_in_sight({
+      scroller,
+      body,
+      items: () => shown,
+      row: (p, place) =>
+        P.element(
+          "tr",
+          { tabindex: 0, "data-row": place, "data-point": p.index, "aria-selected": String(p === chosen) },
+          ...columns.map((c) => c[1](p)),
         ),
-        ...(last < shown.length ? [spacer(shown.length - last)] : []),
-      );
-      if (focused !== undefined) body.querySelector(`[data-row="${focused}"]`)?.focus({ preventScroll: true });
-    };
-    const scroller = P.element("div", { class: "table-scroll", tabindex: -1, onscroll: draw_rows }, table);
+      columns: () => columns.length,
+    });
     const refresh = () => {
       const words = wanted.text.toLowerCase().split(/\s+/).filter(Boolean);
       shown = ordered.filter(
@@ -105,11 +96,11 @@
       );
       table.setAttribute("aria-rowcount", shown.length + 1);
       count.textContent = shown.length === P.points.length ? `${shown.length} points` : `${shown.length} of ${P.points.length} points`;
-      draw_rows();
+      rows.draw();
     };
     const pick = (row, scroll) => {
       chosen = P.points[Number(row.dataset.point)];
-      draw_rows();
+      rows.draw();
       choose(chosen, scroll);
     };
     body.addEventListener("click", (event) => {
@@ -120,8 +111,8 @@
       const row = event.target.closest("tr[data-row]");
       if (!row) return;
       if (event.key === "Enter" || event.key === " ") pick(row, true);
-      else if (event.key === "ArrowDown" || event.key === "ArrowUp")
-        body.querySelector(`[data-row="${Number(row.dataset.row) + (event.key === "ArrowDown" ? 1 : -1)}"]`)?.focus();
+      else if (rows.step(event.key, Number(row.dataset.row)) !== undefined)
+        rows.reveal(rows.step(event.key, Number(row.dataset.row)), table.tHead.offsetHeight);
       else return;
       event.preventDefault();
     });
@@ -150,9 +141,7 @@
     );
     refresh();
     chosen = ordered.find((p) => p.has_pictures && p.verdict !== "pass") ?? ordered.find((p) => p.has_pictures) ?? ordered[0] ?? null;
-    draw_rows();
+    rows.draw();
     if (chosen) choose(chosen, false);
-    addEventListener("resize", draw_rows);
-    P.on_scheme_change(draw_rows);
   };
 })();

@@ -1,13 +1,10 @@
-// The results table. Only the rows in sight exist in the document, so ten thousand points cost no more than fifty.
+// The results table.
 (() => {
-  const row_height = 33,
-    margin_rows = 12,
-    print_limit = 2000;
   let columns = [],
     sorted = [],
     sort = { column: null, down: false },
     focus = 0;
-  let scroller, table, body, count;
+  let scroller, table, body, count, rows;
 
   const cell_text = (c, p) => {
     const value = c.get(p);
@@ -118,39 +115,18 @@
       ),
     );
 
-  const spacer = (rows) =>
+  const row_of = (p, place) =>
     P.element(
       "tr",
-      { class: "spacer", "aria-hidden": "true" },
-      P.element("td", { colspan: columns.length, style: `height:${rows * row_height}px` }),
+      {
+        tabindex: place === focus ? 0 : -1,
+        "data-row": place,
+        "data-point": p.index,
+        "aria-rowindex": place + 2,
+        class: p.status,
+      },
+      ...cells_of(p),
     );
-  const draw_rows = (everything = false) => {
-    const first = everything ? 0 : Math.max(0, Math.floor(scroller.scrollTop / row_height) - margin_rows);
-    const in_sight = Math.ceil((scroller.clientHeight || 600) / row_height) + 2 * margin_rows;
-    const last = everything
-      ? Math.min(sorted.length, print_limit)
-      : Math.min(sorted.length, first + in_sight);
-    const had_focus = body.contains(document.activeElement);
-    const rows = sorted.slice(first, last).map((p, i) =>
-      P.element(
-        "tr",
-        {
-          tabindex: first + i === focus ? 0 : -1,
-          "data-row": first + i,
-          "data-point": p.index,
-          "aria-rowindex": first + i + 2,
-          class: p.status,
-        },
-        ...cells_of(p),
-      ),
-    );
-    body.replaceChildren(
-      ...(first ? [spacer(first)] : []),
-      ...rows,
-      ...(last < sorted.length && !everything ? [spacer(sorted.length - last)] : []),
-    );
-    if (had_focus) body.querySelector(`[data-row="${focus}"]`)?.focus({ preventScroll: true });
-  };
 
   const rebuild = () => {
     columns = P.columns.filter((c) => c.shown);
@@ -171,7 +147,7 @@
       sorted.length === P.points.length
         ? `${sorted.length} points`
         : `${sorted.length} of ${P.points.length} points`;
-    draw_rows();
+    rows.draw();
   };
   const sort_by = (c) => {
     sort = { column: c, down: sort.column === c ? !sort.down : false };
@@ -180,30 +156,11 @@
     table.querySelector(`thead [data-key="${CSS.escape(key)}"] button`)?.focus();
   };
 
-  const move_focus = (to) => {
-    focus = Math.min(Math.max(0, to), sorted.length - 1);
-    const head = table.tHead.offsetHeight,
-      y = focus * row_height;
-    if (y < scroller.scrollTop) scroller.scrollTop = y;
-    else if (y + row_height + head > scroller.scrollTop + scroller.clientHeight)
-      scroller.scrollTop = y + row_height + head - scroller.clientHeight;
-    draw_rows();
-    body.querySelector(`[data-row="${focus}"]`)?.focus({ preventScroll: true });
-  };
   const on_key = (event) => {
     const row = event.target.closest("tr[data-row]");
     if (!row) return;
-    const page = Math.floor(scroller.clientHeight / row_height) - 2,
-      at = Number(row.dataset.row);
-    const steps = {
-      ArrowDown: at + 1,
-      ArrowUp: at - 1,
-      PageDown: at + page,
-      PageUp: at - page,
-      Home: 0,
-      End: sorted.length - 1,
-    };
-    if (event.key in steps) move_focus(steps[event.key]);
+    const to = rows.step(event.key, Number(row.dataset.row));
+    if (to !== undefined) rows.reveal((focus = to), table.tHead.offsetHeight);
     else if (event.key === "Enter" || event.key === " ") P.show_details(P.points[Number(row.dataset.point)]);
     else return;
     event.preventDefault();
@@ -261,7 +218,8 @@
     count = P.element("output", { class: "count", "aria-live": "polite" });
     body = P.element("tbody");
     table = P.element("table", { class: "results" });
-    scroller = P.element("div", { class: "table-scroll", tabindex: -1, onscroll: () => draw_rows() }, table);
+    scroller = P.element("div", { class: "table-scroll", tabindex: -1 }, table);
+    rows = P.rows_in_sight({ scroller, body, items: () => sorted, row: row_of, columns: () => columns.length });
     table.addEventListener("keydown", on_key);
     body.addEventListener("click", (event) => {
       const row = event.target.closest("tr[data-row]");
@@ -302,9 +260,5 @@
       scroller.scrollTop = 0;
       refresh();
     });
-    P.on_scheme_change(() => draw_rows());
-    addEventListener("beforeprint", () => draw_rows(true));
-    addEventListener("afterprint", () => draw_rows());
-    addEventListener("resize", () => draw_rows());
   };
 })();
