@@ -37,7 +37,7 @@ std::vector<std::string> keys_of(LightKind kind) {
       add({"center", "radius"});
       break;
     case LightKind::volume:
-      add({"points", "weights"});
+      add({"points", "ellipsoid", "weights"});
       break;
   }
   return keys;
@@ -106,15 +106,44 @@ void read_texture(const JsonNode& node, Light& light) {
       static_cast<std::size_t>(light.texture_width) * static_cast<std::size_t>(light.texture_height));
 }
 
-void read_volume(const JsonNode& node, Light& light) {
-  const JsonNode points = node.require("points", "a volume light");
-  Vec3d sum{};
-  for (const JsonNode& p : points.items()) {
-    const Vec3d v = read_point(p);
-    light.points.push_back(Vec3f(v));
-    sum += v;
+double radical_inverse(int i, int base) {
+  double value = 0, digit = 1.0 / base;
+  for (; i > 0; i /= base, digit /= base) value += digit * (i % base);
+  return value;
+}
+
+// So many points of an ellipsoid, spread evenly: those of a Halton sequence in its box that lie in it.
+std::vector<Vec3d> read_ellipsoid(const JsonNode& node) {
+  const char* what = "an ellipsoid of points";
+  node.allow_only({"center", "half_axes", "count"}, what);
+  const Vec3d center = read_point(node.require("center", what));
+  const JsonNode axes_node = node.require("half_axes", what);
+  const Vec3d axes = read_point(axes_node);
+  if (!(axes.x > 0 && axes.y > 0 && axes.z > 0)) axes_node.fail("three lengths above 0");
+  const auto count = static_cast<std::size_t>(node.require("count", what).integer(1, 32768));
+  std::vector<Vec3d> points;
+  for (int i = 1; points.size() < count; ++i) {
+    const Vec3d unit{2 * radical_inverse(i, 2) - 1, 2 * radical_inverse(i, 3) - 1,
+                     2 * radical_inverse(i, 5) - 1};
+    if (dot(unit, unit) <= 1)
+      points.push_back(center + Vec3d{unit.x * axes.x, unit.y * axes.y, unit.z * axes.z});
   }
-  if (light.points.empty()) points.fail("at least one point");
+  return points;
+}
+
+void read_volume(const JsonNode& node, Light& light) {
+  if (node.has("points") == node.has("ellipsoid"))
+    node.complain("expected either \"points\" or \"ellipsoid\".");
+  std::vector<Vec3d> points;
+  if (const auto ellipsoid = node.find("ellipsoid")) {
+    points = read_ellipsoid(*ellipsoid);
+  } else {
+    const JsonNode list = *node.find("points");
+    for (const JsonNode& p : list.items()) points.push_back(read_point(p));
+    if (points.empty()) list.fail("at least one point");
+  }
+  Vec3d sum{};
+  for (const Vec3d& p : points) light.points.push_back(Vec3f(p)), sum += p;
   light.center = Vec3f(sum / double(light.points.size()));
   light.weights.assign(light.points.size(), 1.0f);
   if (const auto weights = node.find("weights")) light.weights = read_weights(*weights, light.points.size());

@@ -101,6 +101,8 @@ json light() {
                      {"direction", point},
                      {"target", point},
                      {"cone_degrees", {{"type", "number"}, {"minimum", 0.1}, {"maximum", 89}}}};
+  const json ellipsoid = object({{"center", point}, {"half_axes", point}, {"count", integer(1, 32768)}},
+                                {"center", "half_axes", "count"});
   return {
       {"anyOf",
        json::array({light_of("point", {{"center", point}}, {"center"}),
@@ -108,7 +110,8 @@ json light() {
                     light_of("spot", spot, {"center"}), light_of("rectangle", rectangle, {"center"}),
                     light_of("sphere", {{"center", point}, {"radius", above_zero()}}, {"center", "radius"}),
                     light_of("textured_rectangle", textured, {"center", "texture"}),
-                    light_of("volume", {{"points", list(point, 1)}, {"weights", weights}}, {"points"})})}};
+                    light_of("volume", {{"points", list(point, 1)}, {"weights", weights}}, {"points"}),
+                    light_of("volume", {{"ellipsoid", ellipsoid}, {"weights", weights}}, {"ellipsoid"})})}};
 }
 
 json camera() {

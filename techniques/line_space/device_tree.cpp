@@ -24,11 +24,12 @@ uint64_t in_rows(uint64_t bytes) {
   return std::max<uint64_t>(1, (bytes + row_bytes - 1) / row_bytes) * row_bytes;
 }
 
-// An image of all words of a buffer of whole rows.
-void copy_words(gpu::PassRecorder& passes, const gpu::Buffer& from, gpu::Image& to, const char* pass) {
+// An image of all words of a buffer of whole rows, one or four to a texel.
+void copy_words(gpu::PassRecorder& passes, const gpu::Buffer& from, gpu::Image& to, const char* pass,
+                uint32_t per_texel) {
   gpu::ImageDesc desc;
-  desc.width = word_row, desc.height = static_cast<uint32_t>(from.bytes() / row_bytes);
-  desc.format = VK_FORMAT_R32G32B32A32_UINT;
+  desc.width = word_row * 4 / per_texel, desc.height = static_cast<uint32_t>(from.bytes() / row_bytes);
+  desc.format = per_texel == 4 ? VK_FORMAT_R32G32B32A32_UINT : VK_FORMAT_R32_UINT;
   desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   if (!to || to.desc().height != desc.height) to = gpu::Image(passes.device(), desc, "line space: words");
   passes.device_pass(pass, [&](gpu::Commands& commands) {
@@ -59,12 +60,13 @@ void DeviceTree::allocate(gpu::Device& device, uint32_t branching, uint64_t node
 void DeviceTree::copy_to_images(gpu::PassRecorder& passes) {
   const gpu::Device& device = passes.device();
   const uint64_t most = uint64_t{device.caps().max_image_2d} * row_bytes;
-  if (refuse_images_ || !device.info().software || tree_.bytes() > most || line_space_.bytes() > most) {
+  if (refuse_images_ || !device.info().software || device.caps().max_image_2d < 4 * word_row ||
+      tree_.bytes() > most || line_space_.bytes() > most) {
     tree_image_ = {}, line_space_image_ = {};
     return;
   }
-  copy_words(passes, tree_, tree_image_, "copy_to_images");
-  copy_words(passes, line_space_, line_space_image_, "copy_to_images");
+  copy_words(passes, tree_, tree_image_, "copy_to_images", 1);
+  copy_words(passes, line_space_, line_space_image_, "copy_to_images", 1);
 }
 
 uint64_t DeviceTree::bytes() const {
@@ -198,7 +200,7 @@ void DeviceTree::fill(const std::vector<Level>& levels, const ShaftTable& table,
   const gpu::Buffer rows = words(passes.device(), padded.size(), "line space: shafts of subnodes");
   gpu::Image row_image;
   gpu::upload(passes, "upload_shafts", rows, padded.data(), padded.size() * sizeof(uint32_t));
-  copy_words(passes, rows, row_image, "upload_shafts");
+  copy_words(passes, rows, row_image, "upload_shafts", 4);
   passes.finish();
   shafts_.bind_images(std::array{row_image.view()});
   const uint64_t groups_per_node = groups_of((table.words() + 3) / 4);

@@ -158,7 +158,8 @@ TEST_F(SceneFile, EveryKindOfLightIsRead) {
     {"name": "b", "kind": "sphere", "center": [0, 5, 0], "radius": 0.5},
     {"name": "t", "kind": "textured_rectangle", "center": [0, 5, 0], "direction": [0, -1, 0], "width": 1, "height": 2,
      "texture": {"width": 2, "height": 1, "weights": [0, 3]}},
-    {"name": "v", "kind": "volume", "points": [[0, 5, 0], [0, 7, 0]], "weights": [1, 2]}, )";
+    {"name": "v", "kind": "volume", "points": [[0, 5, 0], [0, 7, 0]], "weights": [1, 2]},
+    {"name": "e", "kind": "volume", "ellipsoid": {"center": [0, 6, 0], "half_axes": [1, 2, 0.5], "count": 200}}, )";
   text.replace(text.find("\"lights\": ["), 11, lights);
   const Scene s = load(text);
   EXPECT_EQ(s.light("r").direction, (Vec3f{0, -1, 0}));
@@ -168,6 +169,17 @@ TEST_F(SceneFile, EveryKindOfLightIsRead) {
   EXPECT_EQ(s.light("t").weights, (std::vector<float>{0, 3}));
   EXPECT_NEAR(s.light("t").size(), std::sqrt(5.0), 1e-6);
   EXPECT_EQ(s.light("v").center, (Vec3f{0, 6, 0}));
+  const Light& ellipsoid = s.light("e");
+  EXPECT_EQ(ellipsoid.points.size(), 200U);
+  EXPECT_EQ(ellipsoid.weights, std::vector<float>(200, 1));
+  EXPECT_LT(length(ellipsoid.center - Vec3f{0, 6, 0}), 0.05F);
+  Vec3f reach{};
+  for (const Vec3f& p : ellipsoid.points) {
+    const Vec3f unit{p.x, (p.y - 6) / 2, p.z / 0.5F};
+    EXPECT_LE(length(unit), 1.0001F);
+    reach = max(reach, Vec3f{std::abs(unit.x), std::abs(unit.y), std::abs(unit.z)});
+  }
+  EXPECT_GT(std::min({reach.x, reach.y, reach.z}), 0.9F);
   const Light& key = s.light("key");
   EXPECT_NEAR(length(normalize(cross(key.edge_u, key.edge_v)) - key.direction), 0, 1e-6);
 }

@@ -3,6 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
+#extension GL_KHR_shader_subgroup_vote : require
+#extension GL_EXT_control_flow_attributes : require
 #define PENUMBRA_COMPUTE
 #include "gpu/shaders/common.glsl"
 #include "techniques/common/shaders/buffers.glsl"
@@ -44,17 +46,28 @@ void unpack(uint pixel) {
   if (fill > 0u) pc.masks.at[pixel * pc.mask_words + word] = current;
 }
 
-// Places are the same for all pixels: a subgroup loads as many as it has lanes at once.
+// Places are the same for all pixels: a subgroup loads as many as it has lanes at once. Where all its pixels see the whole
+// light or nothing of it, order does not matter.
 void gather(uint pixel, bool real) {
-  uint walked[WORDS];
-  for (uint k = 0u; k < WORDS; k++) walked[k] = pc.walked.at[pixel * WORDS + k];
-  for (uint k = 0u; k < pc.mask_words; k++) {
+  uint walked[WORDS], and_ = 0xffffffffu, or_ = 0u;
+  [[unroll]] for (uint k = 0u; k < WORDS; k++) {
+    walked[k] = pc.walked.at[pixel * WORDS + k];
+    and_ &= walked[k] | ~owned(k);
+    or_ |= walked[k] & owned(k);
+  }
+  bool mixed = or_ != 0u && and_ != 0xffffffffu;
+  uint words = subgroupAny(mixed) ? pc.mask_words : 0u;
+  for (uint k = words; k < pc.mask_words; k++)
+    if (real) pc.masks.at[pixel * pc.mask_words + k] = and_ & owned(k);
+  for (uint k = 0u; k < words; k++) {
     uint w = 0u;
     for (uint b = 0u; b < 32u; b += gl_SubgroupSize) {
       uint mine = pc.places.at[min(32u * k + b + gl_SubgroupInvocationID, SAMPLES - 1u)];
       for (uint l = 0u; l < min(gl_SubgroupSize, 32u); l++) {
-        uint place = subgroupShuffle(mine, l);
-        w |= (walked[place >> 5u] >> (place & 31u) & 1u) << (b + l);
+        uint place = subgroupShuffle(mine, l), bits = 0u;
+        // Comparisons, not walked[place >> 5]: a place that varies costs more.
+        [[unroll]] for (uint q = 0u; q < WORDS; q++) bits = place >> 5u == q ? walked[q] : bits;
+        w |= (bits >> (place & 31u) & 1u) << (b + l);
       }
     }
     if (real) pc.masks.at[pixel * pc.mask_words + k] = w & owned(k);

@@ -24,7 +24,8 @@ uint line_space_word(uint place) { return push.line_space_pool.at[place]; }
 void main() {
   const uint tiles = (push.width + tile_side - 1u) / tile_side, tile = linear_group();
   const uint lane = gl_LocalInvocationID.x;
-  const uint px = tile % tiles * tile_side + lane % tile_side, py = tile / tiles * tile_side + lane / tile_side;
+  // Eight lanes, where that is a subgroup, are 4 x 2 pixels.
+  const uint px = tile % tiles * tile_side + (lane & 3u) + (lane >> 1u & 4u), py = tile / tiles * tile_side + (lane >> 2u & 1u) + (lane >> 3u & 6u);
   if (px >= push.width || py >= push.height) return;
   const uint pixel = py * push.width + px, word = pixel * push.words + (push.first >> 5u);
   const bool first_of_word = (push.first & 31u) == 0u;

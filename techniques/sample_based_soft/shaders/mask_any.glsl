@@ -1,6 +1,6 @@
 // The visibility mask of any set of light samples, one bit each: WORDS words of it at a time, from pc.first_word on.
-// Every sample is held against the triangle's three edge half-spaces and its plane; with a lookup table, the samples
-// behind each plane are looked up [Sintorn2008, sec. 4.2].
+// Samples are held against the triangle's three edge half-spaces and its plane, cluster by cluster; with a lookup table, the
+// samples behind each plane are looked up [Sintorn2008, sec. 4.2].
 layout(constant_id = 1) const int SAMPLES = 1;   // of the whole set
 layout(constant_id = 4) const int WORDS = 1;
 layout(constant_id = 5) const int TABLE = 0;     // entries along each axis; 0: planes are evaluated exactly
@@ -9,7 +9,12 @@ layout(constant_id = 21) const bool ABOVE_HORIZON = false;  // counts leave out 
 layout(constant_id = 20) const uint MOVE = 0;    // PixelMove: 1 shift, 2 wrap, 3 turn
 
 layout(constant_id = 24) const bool CLUSTERED = false;
-const int CLUSTER = 16, LAST_CLUSTER = (SAMPLES - 1) / CLUSTER;   // samples of a cluster: neighbours, half a word
+// Samples of a cluster are neighbours, a half word or, where a pass has more than 32 of these, a word.
+const int CLUSTER = WORDS > 16 ? 32 : 16, BOXED = 16;   // boxes are of BOXED samples
+const int CLUSTERS = 32 * WORDS / CLUSTER;   // of a pass: at most 32, so that a word is a set of them
+const int HELD = (CLUSTERS + int(SG) - 1) / int(SG);   // clusters that a lane holds the boxes of
+// Boxes of triangles are held against boxes of clusters, where all view samples have the same.
+const bool BY_CLUSTER = CLUSTERED && MOVE == 0u && TABLE == 0;
 
 layout(set = 0, binding = 6) uniform sampler2D light_samples;    // SAMPLES in the world, then in working space; CLUSTERED: then per
                                                                  // cluster its box there, middle and half sides
@@ -22,6 +27,14 @@ float pad, table_radius;   // table_radius: of the samples about the centre
 vec3 light_middle, light_extent;
 #include "techniques/common/shaders/hull_of_boxes.glsl"
 uint first_word;
+vec3 held_lo[HELD], held_hi[HELD];   // boxes of clusters k SG + lane of this pass
+uint closed;                // clusters of which the view sample sees no sample any more
+uint open_;                 // clusters of which some view sample of the group still sees one
+// The light's bounds are cut into SG columns and as many rows. Clusters that reach to the right of the start of column
+// `lane`, and to the left of its end; for rows likewise.
+uint right_of, left_of, below_of, above_of;
+vec2 cells_at, cells_per;
+
 // Blocked from the start: no part in counts where ABOVE_HORIZON.
 uint below_horizon[WORDS];
 uint counted(uint bits, int word) {
@@ -77,11 +90,65 @@ vec3 moved_in_world(vec4 L, float place_v, FrameConstants f) {
   return L.xyz + (side_u.xyz * m.x + side_v.xyz * m.y);
 }
 
+uint all_clusters() {
+  int left = SAMPLES - 32 * int(first_word), n = min((left + CLUSTER - 1) / CLUSTER, CLUSTERS);
+  return n >= 32 ? 0xffffffffu : (1u << n) - 1u;
+}
+
+vec3 from_lane(vec3 v, uint l) { return vec3(subgroupShuffle(v.x, l), subgroupShuffle(v.y, l), subgroupShuffle(v.z, l)); }
+
+void hold_boxes() {
+  const int boxes = CLUSTER / BOXED, last = (SAMPLES - 1) / BOXED;
+  [[unroll]] for (int k = 0; k < HELD; k++) {
+    held_lo[k] = vec3(1e30);
+    held_hi[k] = vec3(-1e30);
+    [[unroll]] for (int j = 0; j < boxes; j++) {
+      int mine = 32 / BOXED * int(first_word) + (k * int(SG) + int(gl_SubgroupInvocationID)) * boxes + j;
+      uint at = uint(2 * SAMPLES + 2 * min(mine, last));
+      vec3 middle = texel(light_samples, at).xyz, extent = texel(light_samples, at + 1u).xyz;
+      held_lo[k] = lower(held_lo[k], middle - extent);
+      held_hi[k] = upper(held_hi[k], middle + extent);
+    }
+  }
+}
+
+void begin_clusters() {
+  open_ = all_clusters();
+  closed = 0u;
+  if (!CLUSTERED) return;
+  hold_boxes();
+  cells_at = light_middle.xy - light_extent.xy;
+  vec2 size = 2.0 * light_extent.xy / float(SG);
+  cells_per = 1.0 / size;
+  vec2 from = cells_at + size * (float(gl_SubgroupInvocationID) - 0.01), to = cells_at + size * (float(gl_SubgroupInvocationID) + 1.01);
+  right_of = left_of = below_of = above_of = 0u;
+  [[unroll]] for (int c = 0; c < CLUSTERS; c++) {
+    uint l = uint(c) % SG, bit = 1u << c;
+    vec3 lo = from_lane(held_lo[c / int(SG)], l), hi = from_lane(held_hi[c / int(SG)], l);
+    right_of |= hi.x >= from.x ? bit : 0u;
+    left_of |= lo.x <= to.x ? bit : 0u;
+    below_of |= hi.y >= from.y ? bit : 0u;
+    above_of |= lo.y <= to.y ? bit : 0u;
+  }
+}
+
+// Clusters that may reach into a rectangle.
+uint clusters_in(vec2 lo, vec2 hi) {
+  const float last = float(SG - 1u);
+  vec2 from = (lo - cells_at) * cells_per, to = (hi - cells_at) * cells_per;
+  bool meets = from.x <= float(SG) && from.y <= float(SG) && to.x >= 0.0 && to.y >= 0.0;
+  uint i0 = uint(clamp(from.x, 0.0, last)), i1 = uint(clamp(to.x, 0.0, last));
+  uint j0 = uint(clamp(from.y, 0.0, last)), j1 = uint(clamp(to.y, 0.0, last));
+  uint found = subgroupShuffle(right_of, i0) & subgroupShuffle(left_of, i1) & subgroupShuffle(below_of, j0) & subgroupShuffle(above_of, j1);
+  return meets ? found : 0u;
+}
+
 void begin_light(FrameConstants f, uint word) {
   first_word = word;
   grow_lo = f.light_lo.xyz - group_lo;
   grow_hi = f.light_hi.xyz - group_hi;
   table_radius = f.light_lo.w;
+  begin_clusters();
 }
 
 vec4 light_sample(int i, int of) { return texel(light_samples, uint(of * SAMPLES + min(i, SAMPLES - 1))); }
@@ -111,11 +178,41 @@ void block_horizon(vec3 P, vec3 n, FrameConstants f) {
 }
 
 void begin_mask() {}
-void update_open() {}
 
+void update_open() {
+  closed = 0u;
+  [[unroll]] for (int w = 0; w < WORDS; w++) {
+    bool low = (mask[w] & 0xffffu) == 0xffffu, high = mask[w] >> 16u == 0xffffu;
+    closed |= CLUSTER == 32 ? (low && high ? 1u << w : 0u) : (low ? 1u << (2 * w) : 0u) | (high ? 2u << (2 * w) : 0u);
+  }
+  open_ = or_of_all(~closed) & all_clusters();
+}
+
+vec2 lower2(vec2 a, vec2 b) { return mix(b, a, lessThan(a, b)); }
+vec2 upper2(vec2 a, vec2 b) { return mix(b, a, greaterThan(a, b)); }
+
+// Clusters of which a box may hide something from a view sample of the group.
+//
+// A point q hides from p the point q s + p (1 - s) of the plane z = l, s = (p.z - l) / (p.z - q.z) >= 1 where q lies between
+// the light and p; s grows with q.z, and falls with p.z and l. As in mask_grid.glsl, for a light that is not flat.
+uint clusters_behind(vec3 lo, vec3 hi) {
+  float l1 = light_middle.z + light_extent.z, l0 = light_middle.z - light_extent.z;
+  bool before_light = lo.z > l1 + 2.0 * pad;
+  float wide = group_hi.z - lo.z + 2.0 * pad, rest = group_lo.z - hi.z - 2.0 * pad;
+  float s0 = upper((group_hi.z - l1) / upper(wide, pad) * 0.99999, 1.0);
+  float s1 = rest > pad ? upper((group_lo.z - l0) / rest * 1.00001, 1.0) : 1e30;
+  vec2 least_ = lo.xy - group_hi.xy - 2.0 * pad, most = hi.xy - group_lo.xy + 2.0 * pad;
+  vec2 from = lower2(least_ * s0, least_ * s1) + group_hi.xy - 8.0 * pad, to = upper2(most * s0, most * s1) + group_lo.xy + 8.0 * pad;
+  uint found = clusters_in(from, to);
+  return before_light ? found : 0xffffffffu;
+}
+
+// `rect`: the clusters of which the box may hide something that is not hidden from all the group.
 bool touches(vec3 lo, vec3 hi, out uint rect) {
-  rect = 0u;
-  return meets_hull(lo, hi, 1.0) && lo.x <= hi.x;
+  bool met = meets_hull(lo, hi, 1.0) && lo.x <= hi.x;
+  rect = open_;
+  if (BY_CLUSTER) rect &= clusters_behind(lo, hi);
+  return met && rect != 0u;
 }
 
 bool separates(vec3 a, vec3 b, vec3 c) { return true; }
@@ -146,6 +243,20 @@ void add_bits(int word, uint bits) {
   [[unroll]] for (int w = 0; w < WORDS; w++) mask[w] |= w == word ? bits : 0u;
 }
 
+// A triangle's half-spaces: what it hides is on the positive side of the planes through the view sample and its edges,
+// and beyond its own.
+struct HalfSpaces {
+  vec3 ab, bc, ca, plane;
+  float volume;
+};
+
+// Of the triangle as the view sample sees it, and as the set, not moved, does.
+HalfSpaces half_spaces(vec3 a, vec3 b, vec3 c) {
+  HalfSpaces h = HalfSpaces(edge_normal(a, b), edge_normal(b, c), edge_normal(c, a), edge_normal(b - a, c - a), 0.0);
+  float volume = h.ab.x * c.x + h.ab.y * c.y + h.ab.z * c.z, s = volume < 0.0 ? -1.0 : 1.0;
+  return HalfSpaces(plane_of_set(h.ab) * s, plane_of_set(h.bc) * s, plane_of_set(h.ca) * s, plane_of_set(h.plane) * s, abs(volume));
+}
+
 // First texel of the table's entry for the plane through the view sample with normal n, and whether its complement is
 // meant: opposite planes share an entry, so that a common edge leaves no gap between two triangles.
 uint table_entry(vec3 n, bool inner_is_positive, out uint flip) {
@@ -161,9 +272,9 @@ uint table_entry(vec3 n, bool inner_is_positive, out uint flip) {
 
 uvec4 table_bits(uint at) { return texelFetch(table, ivec2(at & 8191u, at >> 13u), 0); }
 
-uint look_up(vec3 ab, vec3 bc, vec3 ca, bool positive, bool counting) {
+uint look_up(HalfSpaces h, bool counting) {
   uint flip0, flip1, flip2, found = 0u;
-  uint e0 = table_entry(ab, positive, flip0), e1 = table_entry(bc, positive, flip1), e2 = table_entry(ca, positive, flip2);
+  uint e0 = table_entry(h.ab, true, flip0), e1 = table_entry(h.bc, true, flip1), e2 = table_entry(h.ca, true, flip2);
   // Words of an entry come four to a texel; a pass begins at a multiple of four.
   uint first = first_word >> 2u;
   [[unroll]] for (uint k = 0u; k < uint(WORDS + 3) / 4u; k++) {
@@ -184,53 +295,36 @@ uint word_of_mask(int word) {
   return found;
 }
 
-// A triangle's half-spaces: what it hides is on the positive side of the planes through the view sample and its edges,
-// and beyond its own.
-struct HalfSpaces {
-  vec3 ab, bc, ca, plane;
-  float volume;
-};
-
-// Which of SG clusters from `first` on may hold a sample that is hidden and not known to be, and which hold none else:
-// a bit each. Half-spaces are asked at the corners of the cluster's box, with more than rounding to spare.
-uvec2 ask_clusters(HalfSpaces h, int first, bool counting) {
-  if (!CLUSTERED || MOVE == 2u) return uvec2(0xffffffffu, 0u);
-  int mine = min(first + int(gl_SubgroupInvocationID), LAST_CLUSTER);
-  vec3 middle = texel(light_samples, uint(2 * SAMPLES + 2 * mine)).xyz;
-  vec3 extent = texel(light_samples, uint(2 * SAMPLES + 2 * mine + 1)).xyz;
-  vec3 nx = vec3(h.ab.x, h.bc.x, h.ca.x), ny = vec3(h.ab.y, h.bc.y, h.ca.y), nz = vec3(h.ab.z, h.bc.z, h.ca.z);
-  uint may = 0u, all_ = 0u;
-  [[unroll]] for (int k = 0; k < int(SG); k++) {
-    vec3 d = vec3(subgroupShuffle(middle.x, uint(k)), subgroupShuffle(middle.y, uint(k)), subgroupShuffle(middle.z, uint(k))) - q;
-    vec3 e = vec3(subgroupShuffle(extent.x, uint(k)), subgroupShuffle(extent.y, uint(k)), subgroupShuffle(extent.z, uint(k)));
-    e += 2e-6 * (abs(d) + e);
-    vec3 at = nx * d.x + ny * d.y + nz * d.z, reach = abs(nx) * e.x + abs(ny) * e.y + abs(nz) * e.z;
-    float beyond = dot(h.plane, d) - h.volume, wide = dot(abs(h.plane), e) + 1e-6 * h.volume;
-    vec3 most = at + reach, least_ = at - reach;
-    bool meets = min(min(most.x, most.y), min(most.z, beyond + wide)) >= 0.0;
-    bool inside = min(min(least_.x, least_.y), min(least_.z, beyond - wide)) > 0.0;
-    may |= meets && !inside ? 1u << k : 0u;
-    all_ |= inside ? 1u << k : 0u;
-  }
-  if (counting) return uvec2(may, all_);
-  [[unroll]] for (int j = 0; j < int(SG) / 2; j++) {
-    uint hidden = word_of_mask(first / 2 + j - int(first_word));
-    may &= (hidden & 0xffffu) == 0xffffu ? ~(1u << (2 * j)) : 0xffffffffu;
-    may &= (hidden >> 16u) == 0xffffu ? ~(2u << (2 * j)) : 0xffffffffu;
-  }
-  return uvec2(may, all_);
+// Clusters that the triangle may hide a part of from the view sample: those in the rectangle about the triangle's projection
+// onto the planes between which the light lies. Corners relative to p.
+uint clusters_of(vec3 a, vec3 b, vec3 c) {
+  if (!CLUSTERED || MOVE == 2u) return all_clusters();
+  a = plane_of_set(a);
+  b = plane_of_set(b);
+  c = plane_of_set(c);
+  float l0 = light_middle.z - light_extent.z, l1 = light_middle.z + light_extent.z;
+  // How far p is before the planes, and before the corners.
+  float h0 = q.z - l0, h1 = q.z - l1;
+  vec3 t = -vec3(a.z, b.z, c.z);
+  bool between_ = lower(t) > 4.0 * pad && upper(t) < h1 - 4.0 * pad;
+  vec3 inverse = 1.0 / upper(t, vec3(pad)), x = vec3(a.x, b.x, c.x) * inverse, y = vec3(a.y, b.y, c.y) * inverse;
+  float x0 = lower(x), x1 = upper(x), y0 = lower(y), y1 = upper(y), slack = 8.0 * pad;
+  vec2 from = vec2(lower(x0 * h0, x0 * h1), lower(y0 * h0, y0 * h1)) + q.xy - slack;
+  vec2 to = vec2(upper(x1 * h0, x1 * h1), upper(y1 * h0, y1 * h1)) + q.xy + slack;
+  uint found = clusters_in(from, to);
+  return (between_ ? found : 0xffffffffu) & all_clusters();
 }
 
 // Which of a cluster's samples are hidden.
 uint evaluate_cluster(HalfSpaces h, int cluster) {
   uint bits = 0u;
   const int step_ = min(int(SG), CLUSTER);
-  for (int k = 0; k < CLUSTER; k += step_) {
-    int i = CLUSTER * cluster + k;
+  [[unroll]] for (int k = 0; k < CLUSTER; k += step_) {
+    int i = 32 * int(first_word) + CLUSTER * cluster + k;
     vec4 mine = light_sample(i + int(gl_SubgroupInvocationID), 1);
     float place_u = MOVE == 2u ? light_sample(i + int(gl_SubgroupInvocationID), 0).w : 0.0;
     [[unroll]] for (int l = 0; l < step_; l++) {
-      vec3 d = vec3(subgroupShuffle(mine.x, uint(l)), subgroupShuffle(mine.y, uint(l)), subgroupShuffle(mine.z, uint(l))) - q;
+      vec3 d = from_lane(mine.xyz, uint(l)) - q;
       if (MOVE == 2u)
         d.xy += wrapped(vec2(subgroupShuffle(place_u, uint(l)), subgroupShuffle(mine.w, uint(l)))) * vec2(side_u.w, side_v.w);
       precise float e0 = h.ab.x * d.x + h.ab.y * d.y + h.ab.z * d.z;
@@ -240,47 +334,68 @@ uint evaluate_cluster(HalfSpaces h, int cluster) {
       bool beyond = dot(h.plane, d) > h.volume, owned = i + l < SAMPLES;
       bits |= hidden && beyond && owned ? 1u << (k + l) : 0u;
     }
-    turns++;
   }
   return bits;
 }
 
-uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) {
-  HalfSpaces h = HalfSpaces(edge_normal(a, b), edge_normal(b, c), edge_normal(c, a), edge_normal(b - a, c - a), 0.0);
-  float volume = h.ab.x * c.x + h.ab.y * c.y + h.ab.z * c.z, s = volume < 0.0 ? -1.0 : 1.0;
-  // After the volume: that is of the triangle, wherever the samples are turned.
-  h = HalfSpaces(plane_of_set(h.ab), plane_of_set(h.bc), plane_of_set(h.ca), plane_of_set(h.plane), abs(volume));
-  if (TABLE > 0 && !crossing) return look_up(h.ab, h.bc, h.ca, !(volume < 0.0), counting);
-  h = HalfSpaces(h.ab * s, h.bc * s, h.ca * s, h.plane * s, h.volume);
-  uint found = 0u;
-  int first = int(first_word) * 2, end = min(first + 2 * WORDS, LAST_CLUSTER + 1);
+// Hides samples of a cluster from the view sample; returns how many where `counting`.
+uint hide(uint bits, int cluster, bool counting) {
+  int word = CLUSTER == 32 ? cluster : cluster / 2, shift = CLUSTER == 32 ? 0 : 16 * (cluster & 1);
+  const uint full = CLUSTER == 32 ? 0xffffffffu : 0xffffu;
+  add_bits(word, bits << shift);
+  bool all_ = (word_of_mask(word) >> shift & full) == full && !counting;
+  closed |= all_ ? 1u << cluster : 0u;
+  return counting ? counted(bits << shift & owned_bits(word), word) : 0u;
+}
+
+// Whether the triangle hides a cluster's box as a whole, x, or a part of it, y: half-spaces at the corners of the box, with
+// more than rounding to spare.
+bvec2 hides_box(HalfSpaces h, int cluster) {
+  vec3 lo = held_lo[0], hi = held_hi[0];
+  [[unroll]] for (int k = 1; k < HELD; k++) {
+    lo = cluster / int(SG) == k ? held_lo[k] : lo;
+    hi = cluster / int(SG) == k ? held_hi[k] : hi;
+  }
+  uint l = uint(cluster) % SG;
+  lo = from_lane(lo, l);
+  hi = from_lane(hi, l);
+  vec3 d = 0.5 * (lo + hi) - q, e = 0.5 * (hi - lo);
+  e += 2e-6 * (abs(d) + e);
+  vec3 nx = vec3(h.ab.x, h.bc.x, h.ca.x), ny = vec3(h.ab.y, h.bc.y, h.ca.y), nz = vec3(h.ab.z, h.bc.z, h.ca.z);
+  vec3 at = nx * d.x + ny * d.y + nz * d.z, reach = abs(nx) * e.x + abs(ny) * e.y + abs(nz) * e.z;
+  float beyond = dot(h.plane, d) - h.volume, wide = dot(abs(h.plane), e) + 1e-6 * h.volume;
+  bool whole = lower(lower(at - reach), beyond - wide) > 0.0, part = lower(lower(at + reach), beyond + wide) >= 0.0;
+  return bvec2(whole, part && !whole);
+}
+
+// Of the clusters that view samples ask for, `asked`: those that the triangle hides as a whole are hidden, those that it hides
+// a part of are left. Returns how many samples are hidden where `counting`.
+uint ask_boxes(HalfSpaces h, inout uint asked, bool counting) {
+  if (!CLUSTERED || MOVE == 2u) return 0u;
+  uint found = 0u, all_ = or_of_all(asked), parts = 0u;
   do {
-    uvec2 asked = ask_clusters(h, first, counting);
-    uint covered = or_of_all(asked.y), left = or_of_all(asked.x);
-    left &= end - first < 32 ? (1u << (end - first)) - 1u : 0xffffffffu;
-    left &= SG < 32u ? (1u << SG) - 1u : 0xffffffffu;
-    if (covered != 0u)
-      [[unroll]] for (int k = 0; k < int(SG); k++) {
-        uint bits = (asked.y >> k & 1u) != 0u && first + k < end ? 0xffffu << (16 * (k & 1)) : 0u;
-        int word = (first + k) / 2 - int(first_word);
-        add_bits(word, bits);
-        if (counting) found += counted(bits & owned_bits(word), word);
-      }
-    if (left != 0u) {
-      do {
-        int k = findLSB(left);
-        left &= left - 1u;
-        uint bits = evaluate_cluster(h, first + k);
-        bits = (asked.x >> k & 1u) != 0u ? bits << (16 * (k & 1)) : 0u;
-        int word = (first + k) / 2 - int(first_word);
-        add_bits(word, bits);
-        if (counting) found += counted(bits, word);
-        turns++;
-      } while (left != 0u);
-    }
-    first += int(SG);
+    int cluster = all_ != 0u ? findLSB(all_) : 0;
+    all_ &= all_ - 1u;
+    bool mine = (asked >> cluster & 1u) != 0u;
+    bvec2 is = hides_box(h, cluster);
+    parts |= mine && is.y ? 1u << cluster : 0u;
+    found += hide(mine && is.x ? 0xffffffffu >> (32 - CLUSTER) : 0u, cluster, counting);
     turns++;
-  } while (first < end);
+  } while (all_ != 0u);
+  asked = parts;
+  return found;
+}
+
+// Samples of the clusters `asked`. Returns how many are hidden where `counting`.
+uint hide_samples(HalfSpaces h, uint asked, bool counting) {
+  uint found = 0u, all_ = or_of_all(asked);
+  do {
+    int cluster = all_ != 0u ? findLSB(all_) : 0;
+    all_ &= all_ - 1u;
+    uint bits = evaluate_cluster(h, cluster);
+    found += hide((asked >> cluster & 1u) != 0u ? bits : 0u, cluster, counting);
+    turns++;
+  } while (all_ != 0u);
   return found;
 }
 

@@ -172,69 +172,121 @@ bool between(vec3 a, vec3 b, vec3 c) {
   return !((g > reach && l > wide) || (g < -reach && l < -wide));
 }
 
-// Lanes are triangles: the one in `slot` of each lane with `wanted`. Then all that may hide something are evaluated,
-// lanes being view samples. `listed`: from outside the blocks, so possibly through the light's plane.
-void rasterise_slots(uint slot, bool wanted, bool listed) {
+// Of a corner that lane l holds, relative to p.
+vec3 corner_of(vec3 v, uint l) {
+  return vec3(subgroupShuffle(v.x, l), subgroupShuffle(v.y, l), subgroupShuffle(v.z, l)) - p;
+}
+
+// A triangle that covers so many of the light samples was held against the view sample.
+void note(uint found) {
+  if (ABOVE_HORIZON) through *= above > 0.0 ? 1.0 - OPACITY * float(found) / above : 0.0;
+  if (COUNTING != 0u && !idle) {
+    pairs++;
+    necessary += found != 0u ? 1u : 0u;
+  }
+}
+
+// A triangle for each lane, those that may hide something in `left`.
+struct Triangles {
+  vec3 a, b, c;
+  uint rect, left;
+};
+
+// The one in `slot` of each lane with `wanted`. `listed`: from outside the blocks, so possibly through the light's plane.
+Triangles find_triangles(uint slot, bool wanted, bool listed) {
+  Triangles t;
   vec4 a = texel(triangles, slot * 3u);
-  vec3 b = texel(triangles, slot * 3u + 1u).xyz, c = texel(triangles, slot * 3u + 2u).xyz;
-  uint rect;
-  bool touched = touches(lower(lower(a.xyz, b), c), upper(upper(a.xyz, b), c), rect);
+  t.a = a.xyz;
+  t.b = texel(triangles, slot * 3u + 1u).xyz;
+  t.c = texel(triangles, slot * 3u + 2u).xyz;
+  bool touched = touches(lower(lower(t.a, t.b), t.c), upper(upper(t.a, t.b), t.c), t.rect);
   bool apart = true;
-  if (CULL_PLANES || listed) apart = between(a.xyz, b, c);
+  if (CULL_PLANES || listed) apart = between(t.a, t.b, t.c);
   bool meant = listed || a.w == 0.0;
   bool hit = touched && wanted && apart && meant;
-  uint left = ballot(hit);
-  if (left == 0u) return;
-#ifndef GRID
-  // Evaluating all samples is dear: first, cheaply, which triangles can hide any from any view sample.
-  uint sieve = left, kept = 0u;
+  t.left = ballot(hit);
+  return t;
+}
+
+#ifdef GRID
+void rasterise_all(Triangles t, bool listed) {
   do {
-    uint l = uint(findLSB(sieve));
-    sieve &= sieve - 1u;
-    vec3 A = vec3(subgroupShuffle(a.x, l), subgroupShuffle(a.y, l), subgroupShuffle(a.z, l)) - p;
-    vec3 B = vec3(subgroupShuffle(b.x, l), subgroupShuffle(b.y, l), subgroupShuffle(b.z, l)) - p;
-    vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
-    bool open_ = skips_nothing() || !is_full();
-    bool may = may_hide(A, B, C) && open_;
-    bool any_may = ballot(may) != 0u;
-    kept |= any_may ? 1u << l : 0u;
+    uint l = uint(findLSB(t.left));
+    t.left &= t.left - 1u;
+    note(rasterise(corner_of(t.a, l), corner_of(t.b, l), corner_of(t.c, l), subgroupShuffle(t.rect, l), listed,
+                   COUNTING != 0u || ABOVE_HORIZON));
     turns++;
-  } while (sieve != 0u);
-  left = kept;
-  if (left == 0u) return;
-#endif
+  } while (t.left != 0u);
+}
+#else
+void rasterise_all(Triangles t, bool listed) {
+  const bool counting = COUNTING != 0u || ABOVE_HORIZON;
   do {
-    uint l = uint(findLSB(left));
-    left &= left - 1u;
-    vec3 A = vec3(subgroupShuffle(a.x, l), subgroupShuffle(a.y, l), subgroupShuffle(a.z, l)) - p;
-    vec3 B = vec3(subgroupShuffle(b.x, l), subgroupShuffle(b.y, l), subgroupShuffle(b.z, l)) - p;
-    vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
-    uint found = 0u;
-    if (HARD) {
-      bool hides = hides_target(A, B, C);
-      hidden_ = hidden_ || hides;
-      found = hides ? 1u : 0u;
+    HalfSpaces h;
+    uint asked, some, found;
+    do {   // to the next triangle of which some view sample has to evaluate light samples: that is dear
+      uint l = uint(findLSB(t.left));
+      t.left &= t.left - 1u;
+      vec3 a = corner_of(t.a, l), b = corner_of(t.b, l), c = corner_of(t.c, l);
+      h = half_spaces(a, b, c);
+      asked = clusters_of(a, b, c);
+      if (!skips_nothing()) asked &= ~closed;
+      if (TABLE > 0) asked = may_hide(a, b, c) ? asked : 0u;
+      found = 0u;
+      if (TABLE == 0 || listed) found = ask_boxes(h, asked, counting);
+      some = ballot(asked != 0u);
+      turns++;
+      if (some == 0u && t.left != 0u) note(found);
+    } while (some == 0u && t.left != 0u);
+    if (TABLE > 0 && !listed) {
+      if (some != 0u) found = look_up(h, counting);
     } else {
-      found = rasterise(A, B, C, subgroupShuffle(rect, l), listed, COUNTING != 0u || ABOVE_HORIZON);
-      if (ABOVE_HORIZON) through *= above > 0.0 ? 1.0 - OPACITY * float(found) / above : 0.0;
+      found += hide_samples(h, asked, counting);
     }
+    note(found);
+  } while (t.left != 0u);
+}
+#endif
+
+// Lanes were triangles; now they are view samples, and each triangle is held against them all.
+void hide_by(Triangles t, bool listed) {
+  if (t.left == 0u) return;
+  if (!HARD) {
+    rasterise_all(t, listed);
+    return;
+  }
+  do {
+    uint l = uint(findLSB(t.left));
+    t.left &= t.left - 1u;
+    bool hides = hides_target(corner_of(t.a, l), corner_of(t.b, l), corner_of(t.c, l));
+    hidden_ = hidden_ || hides;
     turns++;
-    if (COUNTING != 0u && !idle) {
-      pairs++;
-      necessary += found != 0u ? 1u : 0u;
-    }
-  } while (left != 0u);
+    note(hides ? 1u : 0u);
+  } while (t.left != 0u);
 }
 
 void do_list() {
   uint i = pc.list_begin;
   do {
-    uint mine = i + gl_SubgroupInvocationID;
-    bool wanted = mine < pc.list_end;
-    rasterise_slots(wanted ? pc.list.at[mine] : 0u, wanted, true);
-    i += SG;
-    turns++;
+    Triangles t;
+    do {   // a branch saves no work here, fewer turns do
+      uint mine = i + gl_SubgroupInvocationID;
+      bool wanted = mine < pc.list_end;
+      t = find_triangles(wanted ? pc.list.at[mine] : 0u, wanted, true);
+      i += SG;
+      turns++;
+    } while (t.left == 0u && i < pc.list_end);
+    hide_by(t, true);
   } while (i < pc.list_end);
+}
+
+// Lanes are casters, from `done` on: a bit for each block that may hide something.
+uint find_blocks(uint caster, bool wanted) {
+  vec4 a = texel(regions, 2u * caster), b = texel(regions, 2u * caster + 1u);
+  uint rect;
+  bool touched = touches(a.xyz, vec3(a.w, b.xy), rect);
+  bool hit = touched && wanted;
+  return ballot(hit);
 }
 
 // Goes on after `done` casters; returns how many are done, or 0xffffffff when all are.
@@ -244,39 +296,46 @@ uint walk(uint list, uint done) {
   bool full = false;
   if (done < count) {
     do {
-      uint mine = done + gl_SubgroupInvocationID, i = min(mine, count - 1u);
-      bool wanted = mine < count;
-      uint caster = outside ? i : pc.casters.at[begin + i];
-      if (COUNTING != 0u) tests += wanted ? 1u : 0u;
+      uint left = 0u, caster, at;
+      Triangles t;
+      do {   // to the next casters of which some may hide something
+        at = done;
+        uint mine = at + gl_SubgroupInvocationID, i = min(mine, count - 1u);
+        bool wanted = mine < count;
+        caster = outside ? i : pc.casters.at[begin + i];
+        if (COUNTING != 0u) tests += wanted ? 1u : 0u;
+        if (BLOCKS) {
+          left = find_blocks(caster, wanted);
+        } else {
+          t = find_triangles(caster, wanted, false);
+          left = t.left;
+        }
+        done += SG;
+        turns++;
+      } while (left == 0u && done < count && turns < TURN_LIMIT);
       if (BLOCKS) {
-        vec4 a = texel(regions, 2u * caster), b = texel(regions, 2u * caster + 1u);
-        uint rect;
-        bool touched = touches(a.xyz, vec3(a.w, b.xy), rect);
-        bool hit = touched && wanted;
-        uint left = ballot(hit);
-        uint next = done + SG;
         if (left != 0u) {
           do {
-            uint l = uint(findLSB(left));
-            left &= left - 1u;
-            rasterise_slots(subgroupShuffle(caster, l) * SG + gl_SubgroupInvocationID, true, false);
-            turns++;
+            do {
+              uint l = uint(findLSB(left));
+              left &= left - 1u;
+              t = find_triangles(subgroupShuffle(caster, l) * SG + gl_SubgroupInvocationID, true, false);
+              turns++;
+            } while (t.left == 0u && left != 0u);
+            hide_by(t, false);
             full = all_blocked();
             // Enough for this dispatch: the next one begins at the first block that is left.
             bool stop = turns >= TURN_LIMIT;
-            next = stop && left != 0u ? done + uint(findLSB(left)) : next;
+            done = stop && left != 0u ? at + uint(findLSB(left)) : done;
             left = stop || full ? 0u : left;
           } while (left != 0u);
           if (!skips_nothing()) update_open();
         }
-        done = next;
       } else {
-        rasterise_slots(caster, wanted, false);
+        hide_by(t, false);
         full = all_blocked();
-        if (!skips_nothing() && (done & 63u) == 0u) update_open();
-        done += SG;
+        if (!skips_nothing()) update_open();
       }
-      turns++;
     } while (done < count && !full && turns < TURN_LIMIT);
   }
   return done < count && !full ? done : 0xffffffffu;
@@ -323,6 +382,9 @@ void main() {
   if (HARD) hidden_ = !BEGIN && is_full();
   if ((BEGIN && !ABOVE_HORIZON) || HARD) block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
   if (HARD) choose_target();
+#ifndef GRID
+  if (BEGIN && !HARD && !skips_nothing()) update_open();
+#endif
   if (LIST) do_list();
   if (WALK) {
     if (!BEGIN && !HARD && !skips_nothing()) update_open();
