@@ -22,10 +22,6 @@ struct View {
   float tiny;  // vertices nearer than this to the plane through P, across z, count as behind it
 };
 
-HWY_INLINE Mask sign_bit(Vector v) {
-  const hn::RebindToSigned<Floats> di;
-  return hn::RebindMask(Floats(), hn::Lt(hn::BitCast(di, v), hn::Zero(di)));
-}
 // The one expression that says on which side of a face the view sample is. Zero counts as +, for all its
 // edges.
 HWY_INLINE Vector side_of(Vector nx, Vector ny, Vector nz, Vector offset_of, Vector px, Vector py,

@@ -5,24 +5,14 @@
 #else
 #define PENUMBRA_DEPTH_COMPLEXITY_PACKING
 #endif
-#include <hwy/highway.h>
-
+#include "techniques/common/lanes-inl.h"
 #include "techniques/depth_complexity_sampling/kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::depth_complexity::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, block_edges>;
-using Vector = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-
-HWY_INLINE Vector set(float v) { return hn::Set(Floats(), v); }
-HWY_INLINE uint32_t bits_of(Mask m) {
-  alignas(16) uint8_t bytes[16] = {};
-  hn::StoreMaskBits(Floats(), m, bytes);
-  return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8;
-}
+static_assert(most_lanes == block_edges);
 
 #if HWY_HAVE_SCALABLE || HWY_TARGET <= HWY_AVX3
 // Instructions of their own. Not the ones that store as they pack: those are slow on some processors.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cstring>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/parallel.h"
 #include "techniques/depth_complexity_sampling/morton.h"
@@ -57,8 +59,13 @@ std::vector<std::size_t> chunks_of_runs(const std::vector<Keyed>& keys) {
   return start;
 }
 
-// Numbers the distinct positions along the curve; gives each mesh vertex its number.
-Array<uint32_t> weld(const std::vector<Vec3f>& positions, EdgeTopology& out) {
+struct Welded {
+  Array<uint32_t> of_vertex;  // of a mesh vertex: its position's number
+  Array<Vec3f> positions;     // by number
+};
+
+// Numbers the distinct positions along the curve.
+Welded weld(const std::vector<Vec3f>& positions, EdgeTopology& out) {
   std::vector<Keyed> keys = sorted_vertices(positions);
   const std::vector<std::size_t> start = chunks_of_runs(keys);
   const std::size_t chunks = start.size() - 1;
@@ -70,6 +77,7 @@ Array<uint32_t> weld(const std::vector<Vec3f>& positions, EdgeTopology& out) {
   parallel_for(chunks, 1, [&](std::size_t chunk, std::size_t) {
     for (std::size_t a = start[chunk], b = a; a < start[chunk + 1]; a = b) {
       while (b < start[chunk + 1] && keys[b].code == keys[a].code) ++b;
+      if (b - a == 1) continue;
       std::sort(keys.begin() + static_cast<std::ptrdiff_t>(a), keys.begin() + static_cast<std::ptrdiff_t>(b),
                 [&](const Keyed& x, const Keyed& y) {
                   const auto p = exact(positions[x.index]), q = exact(positions[y.index]);
@@ -80,67 +88,108 @@ Array<uint32_t> weld(const std::vector<Vec3f>& positions, EdgeTopology& out) {
       first[chunk + 1] += i == start[chunk] || is_new(i);
   });
   std::inclusive_scan(first.begin(), first.end(), first.begin());
-  Array<uint32_t> welded(keys.size());
+  Welded welded{Array<uint32_t>(keys.size()), Array<Vec3f>(first.back())};
   out.mesh_vertex.resize(first.back());
   parallel_for(chunks, 1, [&](std::size_t chunk, std::size_t) {
     uint32_t number = first[chunk];
     for (std::size_t i = start[chunk]; i < start[chunk + 1]; ++i) {
-      if (i == start[chunk] || is_new(i)) out.mesh_vertex[number++] = keys[i].index;
-      welded[keys[i].index] = number - 1;
+      if (i == start[chunk] || is_new(i)) {
+        out.mesh_vertex[number] = keys[i].index;
+        welded.positions[number++] = positions[keys[i].index];
+      }
+      welded.of_vertex[keys[i].index] = number - 1;
     }
   });
   return welded;
 }
 
-// A half-edge, filed under its lower vertex: the other vertex, the face, and 1 where it runs towards the
-// lower one.
-uint64_t half_edge(uint32_t other, std::size_t face, bool towards_lower) {
-  return static_cast<uint64_t>(other) << 32 | static_cast<uint64_t>(face) << 1 | (towards_lower ? 1U : 0U);
-}
+// A half-edge as it lies in its bucket; `face` also tells whether it runs towards the lower vertex.
+struct HalfEdge {
+  uint32_t lower, other, face;
+};
+// The same, filed under its lower vertex: the other vertex, the face, and 1 where it runs towards the lower
+// one.
+uint64_t filed(const HalfEdge& h) { return static_cast<uint64_t>(h.other) << 32 | h.face; }
 uint32_t other_vertex(uint64_t h) { return static_cast<uint32_t>(h >> 32); }
 uint32_t face_of(uint64_t h) { return static_cast<uint32_t>(h) >> 1; }
 bool towards_lower(uint64_t h) { return (h & 1) != 0; }
 
-struct HalfEdges {
-  std::vector<uint32_t> start;  // of a vertex's half-edges in `all`; one past the last vertex too
-  Array<uint64_t> all;
+// Half-edges in buckets of vertices that follow each other: one bucket at a time fits into a cache, and
+// belongs to one thread.
+struct Buckets {
+  int shift = 0;                   // a vertex's bucket is its number >> shift
+  std::vector<std::size_t> start;  // of a bucket's half-edges; one past the last bucket too
+  Array<HalfEdge> all;             // then, 8 bytes each from a bucket's start on, filed and sorted
+  Array<uint32_t> used;            // of a vertex: half-edges filed under it
+  std::size_t count() const { return start.size() - 1; }
+  std::size_t half_edges(std::size_t bucket) const { return start[bucket + 1] - start[bucket]; }
 };
 
-HalfEdges file_half_edges(EdgeTopology& out) {
-  const std::size_t vertices = out.mesh_vertex.size(), faces = out.corners.size() / 3;
-  HalfEdges h;
-  h.start.assign(vertices + 2, 0);  // one more, so that filling in moves `start` to its place
-  const auto each_half_edge = [&](std::size_t begin, std::size_t end, const auto& body) {
-    std::size_t dropped = 0;
-    for (std::size_t f = begin; f < end; ++f) {
-      const uint32_t* c = &out.corners[3 * f];
-      // Two corners at one place: the edges cancel one another.
-      if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) {
-        ++dropped;
-        continue;
-      }
-      for (int k = 0; k < 3; ++k) {
-        const uint32_t from = c[k], to = c[(k + 1) % 3];
-        body(std::min(from, to), half_edge(std::max(from, to), f, to < from));
-      }
+constexpr std::size_t bucket_vertices = 1024, most_buckets = 4096;
+
+// Faces in few chunks, as each has a place in each bucket.
+struct FaceChunks {
+  std::size_t faces, size, count;
+  explicit FaceChunks(std::size_t n)
+      : faces(n), size(std::max(grain, (n + 63) / 64)), count((n + size - 1) / size) {}
+  // body(chunk, begin, end) in parallel.
+  template <class F>
+  void each(const F& body) const {
+    parallel_for(count, 1, [&](std::size_t chunk, std::size_t) {
+      body(chunk, chunk * size, std::min(faces, (chunk + 1) * size));
+    });
+  }
+};
+
+// body(half-edge) for all of the faces; returns how many have two corners at one place: their edges cancel
+// one another.
+template <class F>
+std::size_t each_half_edge(const EdgeTopology& t, std::size_t begin, std::size_t end, const F& body) {
+  std::size_t dropped = 0;
+  for (std::size_t f = begin; f < end; ++f) {
+    const uint32_t* c = &t.corners[3 * f];
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) {
+      ++dropped;
+      continue;
     }
-    return dropped;
-  };
-  std::atomic<std::size_t> dropped_faces{0};
-  each_chunk(faces, [&](std::size_t, std::size_t begin, std::size_t end) {
-    dropped_faces += each_half_edge(begin, end, [&](uint32_t lower, uint64_t) {
-      std::atomic_ref(h.start[lower + 2]).fetch_add(1, std::memory_order_relaxed);
-    });
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t from = c[k], to = c[(k + 1) % 3];
+      body(HalfEdge{std::min(from, to), std::max(from, to),
+                    static_cast<uint32_t>(f) << 1 | (to < from ? 1U : 0U)});
+    }
+  }
+  return dropped;
+}
+
+// Corners by welded number, and their half-edges into buckets: counted first, so that each chunk of faces has
+// a place of its own in each bucket.
+Buckets fill_buckets(const std::vector<uint32_t>& indices, const Welded& welded, EdgeTopology& out) {
+  const std::size_t vertices = out.mesh_vertex.size();
+  const FaceChunks chunks(indices.size() / 3);
+  Buckets b;
+  b.shift = static_cast<int>(std::bit_width(std::max(bucket_vertices, vertices / most_buckets) - 1));
+  const std::size_t buckets = (vertices >> b.shift) + 1;
+  std::vector<std::vector<std::size_t>> place(chunks.count, std::vector<std::size_t>(buckets, 0));
+  std::atomic<std::size_t> dropped{0};
+  chunks.each([&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for (std::size_t i = 3 * begin; i < 3 * end; ++i) out.corners[i] = welded.of_vertex[indices[i]];
+    dropped +=
+        each_half_edge(out, begin, end, [&](const HalfEdge& h) { ++place[chunk][h.lower >> b.shift]; });
   });
-  out.dropped_faces = dropped_faces;
-  std::inclusive_scan(h.start.begin(), h.start.end(), h.start.begin());
-  h.all.resize(h.start.back());
-  each_chunk(faces, [&](std::size_t, std::size_t begin, std::size_t end) {
-    each_half_edge(begin, end, [&](uint32_t lower, uint64_t half) {
-      h.all[std::atomic_ref(h.start[lower + 1]).fetch_add(1, std::memory_order_relaxed)] = half;
-    });
+  out.dropped_faces = dropped;
+  std::size_t sum = 0;
+  for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
+    b.start.push_back(sum);
+    for (auto& p : place) sum += std::exchange(p[bucket], sum);
+  }
+  b.start.push_back(sum);
+  b.all.resize(sum);
+  b.used.resize(vertices);
+  chunks.each([&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    each_half_edge(out, begin, end,
+                   [&](const HalfEdge& h) { b.all[place[chunk][h.lower >> b.shift]++] = h; });
   });
-  return h;
+  return b;
 }
 
 // A few half-edges of one vertex, in whatever order the threads filed them.
@@ -182,57 +231,84 @@ void pair_up(uint32_t lower, const uint64_t* begin, const uint64_t* end, Tally& 
   }
 }
 
-template <class Emit>
-void each_edge(const HalfEdges& h, std::size_t begin, std::size_t end, Tally& tally, const Emit& emit) {
-  for (std::size_t v = begin; v < end; ++v) {
-    const uint64_t *first = h.all.data() + h.start[v], *last = h.all.data() + h.start[v + 1];
-    while (first < last) {
-      const uint64_t* next = first + 1;
-      while (next < last && other_vertex(*next) == other_vertex(*first)) ++next;
-      pair_up(static_cast<uint32_t>(v), first, next, tally, emit);
-      first = next;
-    }
+// The vertices of a bucket, and its half-edges in their order.
+struct OpenBucket {
+  std::size_t first_vertex, last_vertex;
+  Array<uint64_t> half_edges;
+
+  OpenBucket(const Buckets& b, std::size_t bucket)
+      : first_vertex(bucket << b.shift),
+        last_vertex(std::min((bucket + 1) << b.shift, b.used.size())),
+        half_edges(b.half_edges(bucket)) {}
+
+  // Files the bucket's half-edges under their vertices, and leaves them filed.
+  void sort(Buckets& b, std::size_t bucket) {
+    const HalfEdge* loose = b.all.data() + b.start[bucket];
+    uint32_t* used = b.used.data() + first_vertex;
+    std::fill(used, used + (last_vertex - first_vertex), 0U);
+    for (std::size_t i = 0; i < half_edges.size(); ++i) ++used[loose[i].lower - first_vertex];
+    std::vector<uint32_t> at(last_vertex - first_vertex + 1, 0);
+    std::inclusive_scan(used, used + (last_vertex - first_vertex), at.begin() + 1);
+    for (std::size_t i = 0; i < half_edges.size(); ++i)
+      half_edges[at[loose[i].lower - first_vertex]++] = filed(loose[i]);
+    uint64_t* h = half_edges.data();
+    for (std::size_t v = first_vertex; v < last_vertex; h += b.used[v++]) sort_few(h, h + b.used[v]);
+    std::memcpy(b.all.data() + b.start[bucket], half_edges.data(), half_edges.size() * sizeof(uint64_t));
   }
-}
+  void reopen(const Buckets& b, std::size_t bucket) {
+    std::memcpy(half_edges.data(), b.all.data() + b.start[bucket], half_edges.size() * sizeof(uint64_t));
+  }
+  template <class Emit>
+  void each_edge(const Buckets& b, Tally& tally, const Emit& emit) const {
+    const uint64_t* first = half_edges.data();
+    for (std::size_t v = first_vertex; v < last_vertex; ++v)
+      for (const uint64_t* last = first + b.used[v]; first < last;) {
+        const uint64_t* next = first + 1;
+        while (next < last && other_vertex(*next) == other_vertex(*first)) ++next;
+        pair_up(static_cast<uint32_t>(v), first, next, tally, emit);
+        first = next;
+      }
+  }
+};
 
 // Long edges (a ground's) would blow up the boxes of their neighbours in the list.
-float long_edge_squared(const EdgeTopology& t, const std::vector<Vec3f>& positions) {
+float long_edge_squared(const EdgeTopology& t, const Array<Vec3f>& positions) {
   constexpr double times_mean = 8;
   const std::size_t faces = t.corners.size() / 3, step = std::max<std::size_t>(1, faces / 4096);
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t f = 0; f < faces; f += step, ++count)
-    sum += static_cast<double>(
-        length(positions[t.mesh_vertex[t.corners[3 * f]]] - positions[t.mesh_vertex[t.corners[3 * f + 1]]]));
+    sum += static_cast<double>(length(positions[t.corners[3 * f]] - positions[t.corners[3 * f + 1]]));
   const double limit = times_mean * sum / static_cast<double>(std::max<std::size_t>(1, count));
   return static_cast<float>(limit * limit);
 }
 
-void list_edges(HalfEdges& h, const std::vector<Vec3f>& positions, EdgeTopology& out) {
-  const std::size_t vertices = out.mesh_vertex.size();
+// First counts, then writes: per bucket the short edges, and per bucket the long ones behind all short ones.
+void list_edges(Buckets& b, const Array<Vec3f>& positions, EdgeTopology& out) {
   const float limit = long_edge_squared(out, positions);
   const auto is_long = [&](const Edge& e) {
-    const Vec3f d = positions[out.mesh_vertex[e.a]] - positions[out.mesh_vertex[e.b]];
+    const Vec3f d = positions[e.a] - positions[e.b];
     return dot(d, d) > limit;
   };
-  // First count, then write: per chunk the short edges, and per chunk the long ones behind all short ones.
-  const std::size_t chunks = chunks_of(vertices);
-  std::vector<std::size_t> start(2 * chunks + 1, 0);
-  std::vector<Tally> tallies(chunks);
-  each_chunk(vertices, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+  const std::size_t buckets = b.count();
+  std::vector<std::size_t> start(2 * buckets + 1, 0);
+  std::vector<Tally> tallies(buckets);
+  parallel_for(buckets, 1, [&](std::size_t bucket, std::size_t) {
+    OpenBucket open(b, bucket);
+    open.sort(b, bucket);
     std::size_t count[2] = {0, 0};
-    for (std::size_t v = begin; v < end; ++v)
-      sort_few(h.all.data() + h.start[v], h.all.data() + h.start[v + 1]);
-    each_edge(h, begin, end, tallies[chunk], [&](const Edge& e) { ++count[is_long(e)]; });
-    start[chunk + 1] = count[0];
-    start[chunks + chunk + 1] = count[1];
+    open.each_edge(b, tallies[bucket], [&](const Edge& e) { ++count[is_long(e)]; });
+    start[bucket + 1] = count[0];
+    start[buckets + bucket + 1] = count[1];
   });
   std::inclusive_scan(start.begin(), start.end(), start.begin());
   out.edges.resize(start.back());
-  each_chunk(vertices, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    std::size_t at[2] = {start[chunk], start[chunks + chunk]};
+  parallel_for(buckets, 1, [&](std::size_t bucket, std::size_t) {
+    OpenBucket open(b, bucket);
+    open.reopen(b, bucket);
+    std::size_t at[2] = {start[bucket], start[buckets + bucket]};
     Tally again;
-    each_edge(h, begin, end, again, [&](const Edge& e) { out.edges[at[is_long(e)]++] = e; });
+    open.each_edge(b, again, [&](const Edge& e) { out.edges[at[is_long(e)]++] = e; });
   });
   for (const Tally& t : tallies)
     out.open += t.open, out.inconsistent += t.inconsistent, out.non_manifold += t.non_manifold;
@@ -242,13 +318,10 @@ void list_edges(HalfEdges& h, const std::vector<Vec3f>& positions, EdgeTopology&
 
 EdgeTopology find_edges(const Geometry& geometry) {
   EdgeTopology out;
-  const Array<uint32_t> welded = weld(geometry.positions, out);
+  const Welded welded = weld(geometry.positions, out);
   out.corners.resize(geometry.indices.size());
-  each_chunk(geometry.indices.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) out.corners[i] = welded[geometry.indices[i]];
-  });
-  HalfEdges half_edges = file_half_edges(out);
-  list_edges(half_edges, geometry.positions, out);
+  Buckets buckets = fill_buckets(geometry.indices, welded, out);
+  list_edges(buckets, welded.positions, out);
   return out;
 }
 

@@ -48,13 +48,13 @@ std::size_t gather_tile(const ViewSamplesHost& view, std::size_t tile, const Lig
     for (std::size_t x = x0; x < std::min(width, x0 + tile_side); ++x) {
       const std::size_t pixel = y * width + x;
       if (view.triangle[pixel] == no_triangle) {
-        judge.write_whole(pixel, false);
+        judge.masks().write_whole(pixel, false);
         continue;
       }
-      const RayJudge::Horizon horizon = judge.horizon(pixel);
+      const HostMasks::Horizon horizon = judge.masks().horizon(pixel);
       const Vec3f p = light.from_world(view.origin[pixel].xyz());
-      if (horizon == RayJudge::Horizon::below) {
-        judge.write_whole(pixel, true);
+      if (horizon == HostMasks::Horizon::below) {
+        judge.masks().write_whole(pixel, true);
         continue;
       }
       if (!(p.z > 0)) {
@@ -62,7 +62,7 @@ std::size_t gather_tile(const ViewSamplesHost& view, std::size_t tile, const Lig
         counts.extra_rays += judge.trace_each(pixel);
         continue;
       }
-      out[count++] = {p.x, p.y, p.z, static_cast<uint32_t>(pixel), horizon == RayJudge::Horizon::across};
+      out[count++] = {p.x, p.y, p.z, static_cast<uint32_t>(pixel), horizon == HostMasks::Horizon::across};
     }
   order(out, count);
   return count;

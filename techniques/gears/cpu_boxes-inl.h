@@ -6,32 +6,17 @@
 #else
 #define PENUMBRA_GEARS_CPU_BOXES
 #endif
-#include <hwy/highway.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "techniques/common/lanes-inl.h"
 #include "techniques/gears/cpu_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace penumbra::gears::cpu::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+using namespace lanes::HWY_NAMESPACE;
 
-using Floats = hn::CappedTag<float, block_size>;
-using Words = hn::RebindToUnsigned<Floats>;
-using Vector = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-
-HWY_INLINE Vector set(float v) { return hn::Set(Floats(), v); }
-HWY_INLINE uint32_t bits_of(Mask m) {
-  alignas(16) uint8_t bytes[16] = {};
-  hn::StoreMaskBits(Floats(), m, bytes);
-  return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8;
-}
-HWY_INLINE Mask sign_bit(Vector v) {
-  const hn::RebindToSigned<Floats> di;
-  return hn::RebindMask(Floats(), hn::Lt(hn::BitCast(di, v), hn::Zero(di)));
-}
+static_assert(most_lanes == block_size);
 
 struct PointBox {
   float lo[3], hi[3];

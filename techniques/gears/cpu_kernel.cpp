@@ -11,13 +11,15 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::gears::cpu::HWY_NAMESPACE {
 
 void walk_tree_here(const Occluders& scene, const ViewPoint* points, std::size_t count, Scratch& scratch) {
-  scene.light->grid ? walk_tree_as<true>(scene, points, count, scratch)
-                    : walk_tree_as<false>(scene, points, count, scratch);
+  with_mask_of(*scene.light, [&](auto type) HWY_ATTR {
+    walk_tree_as<typename decltype(type)::type>(scene, points, count, scratch);
+  });
 }
 void walk_cell_here(const Occluders& scene, std::size_t triangles, const ViewPoint* points, std::size_t count,
                     Scratch& scratch) {
-  scene.light->grid ? walk_cell_as<true>(scene, triangles, points, count, scratch)
-                    : walk_cell_as<false>(scene, triangles, points, count, scratch);
+  with_mask_of(*scene.light, [&](auto type) HWY_ATTR {
+    walk_cell_as<typename decltype(type)::type>(scene, triangles, points, count, scratch);
+  });
 }
 const char* name_of_target() { return hwy::TargetName(HWY_TARGET); }
 int lanes_of_target() { return static_cast<int>(hn::Lanes(Floats())); }
@@ -54,14 +56,17 @@ void Scratch::grow_like(const Scratch& o) {
   };
   stack.reserve(o.stack.capacity()), found.reserve(o.found.capacity());
   for (std::size_t f = 0; f < box_fields; ++f) as(found_boxes[f], o.found_boxes[f]);
+  as(sizes, o.sizes), as(ordered, o.ordered);
   as(listed, o.listed), as(cell, o.cell);
   as(to_x, o.to_x), as(to_y, o.to_y), as(to_z, o.to_z);
 }
 
 uint64_t Scratch::bytes() const {
-  uint64_t b = sizeof(*this) + (stack.capacity() + found.capacity()) * sizeof(uint32_t) +
-               (listed.capacity() + cell.capacity()) * sizeof(Block) +
-               (to_x.capacity() + to_y.capacity() + to_z.capacity()) * sizeof(float);
+  uint64_t b =
+      sizeof(*this) +
+      (stack.capacity() + found.capacity() + sizes.capacity() + ordered.capacity()) * sizeof(uint32_t) +
+      (listed.capacity() + cell.capacity()) * sizeof(Block) +
+      (to_x.capacity() + to_y.capacity() + to_z.capacity()) * sizeof(float);
   for (const auto& v : found_boxes) b += v.capacity() * sizeof(float);
   return b;
 }

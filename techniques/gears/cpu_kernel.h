@@ -54,12 +54,13 @@ struct WorkCounts {
 struct alignas(64) Scratch {
   // 1 = blocked, or no light sample. A grid: part q of row r is word q * most_rows + r. A set: bit by bit.
   alignas(64) uint32_t mask[most_words];
-  std::vector<uint32_t> stack, found;   // nodes to visit; blocks that may matter to the group
-  Boxes found_boxes;                    // theirs
-  std::vector<Block> listed;            // triangles of the list that may matter to the group
-  std::size_t listed_count = 0;         // triangles
-  std::vector<Block> cell;              // assignment: triangles: those of the cell
-  std::vector<float> to_x, to_y, to_z;  // of a set: light samples relative to P'
+  std::vector<uint32_t> stack, found;    // nodes to visit; blocks that may matter to the group
+  Boxes found_boxes;                     // theirs
+  std::vector<uint32_t> sizes, ordered;  // while they are ordered
+  std::vector<Block> listed;             // triangles of the list that may matter to the group
+  std::size_t listed_count = 0;          // triangles
+  std::vector<Block> cell;               // assignment: triangles: those of the cell
+  std::vector<float> to_x, to_y, to_z;   // of a set: light samples relative to P'
   WorkCounts counts;
   void grow_like(const Scratch& other);
   uint64_t bytes() const;

@@ -5,6 +5,7 @@
 #else
 #define PENUMBRA_GEARS_CPU_WALK
 #endif
+#include <bit>
 #include <type_traits>
 
 #include "techniques/gears/cpu_masks-inl.h"
@@ -32,9 +33,34 @@ HWY_INLINE BoxVectors load_boxes(const Boxes& boxes, std::size_t at) {
   return b;
 }
 
+// Orders the blocks found by how much of the light their boxes' sides towards it cover, in steps of a half
+// power of two: what covers much comes first, and then need not be asked for by what it hides.
+HWY_INLINE void largest_first(const Boxes& boxes, float height, Scratch& scratch) {
+  constexpr std::size_t steps = 64;
+  const std::size_t n = scratch.found.size();
+  if (scratch.ordered.size() < n) scratch.ordered.resize(n + n / 2), scratch.sizes.resize(n + n / 2);
+  uint32_t most = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const uint32_t node = scratch.found[i];
+    const auto side = [&](BoxField lo) { return boxes[lo + 3][node] - boxes[lo][node]; };
+    const float above = std::max(height - boxes[lo_z][node], 1e-6F * height);
+    scratch.sizes[i] = std::bit_cast<uint32_t>(side(lo_x) * side(lo_y) / (above * above)) >> 22;
+    most = std::max(most, scratch.sizes[i]);
+  }
+  uint32_t place[steps + 1] = {};
+  for (std::size_t i = 0; i < n; ++i) {
+    scratch.sizes[i] = std::min<uint32_t>(most - scratch.sizes[i], steps - 1);
+    ++place[scratch.sizes[i] + 1];
+  }
+  for (std::size_t s = 0; s < steps; ++s) place[s + 1] += place[s];
+  for (std::size_t i = 0; i < n; ++i) scratch.ordered[place[scratch.sizes[i]]++] = scratch.found[i];
+  std::copy_n(scratch.ordered.begin(), n, scratch.found.begin());
+}
+
 // Blocks that may matter to the group, and their boxes side by side.
 template <bool grid>
-HWY_INLINE void find_blocks(const Occluders& scene, const Window<grid>& window, Scratch& scratch) {
+HWY_INLINE void find_blocks(const Occluders& scene, [[maybe_unused]] const PointBox& box,
+                            const Window<grid>& window, Scratch& scratch) {
   std::vector<uint32_t>&stack = scratch.stack, &found = scratch.found;
   stack.clear(), found.clear();
   stack.push_back(0);
@@ -53,6 +79,7 @@ HWY_INLINE void find_blocks(const Occluders& scene, const Window<grid>& window, 
           stack.push_back(node);
       }
   }
+  if constexpr (grid) largest_first(*scene.boxes, box.hi[2], scratch);
   const std::size_t padded = (found.size() + block_size - 1) / block_size * block_size;
   for (std::size_t f = 0; f < box_fields; ++f) {
     std::vector<float>& to = scratch.found_boxes[f];
@@ -117,92 +144,124 @@ HWY_INLINE void choose_listed(const Occluders& scene, const PointBox& box, const
   scratch.counts.listed += scratch.listed_count;
 }
 
-template <bool grid, bool crossing>
-HWY_INLINE void rasterise(const Block& block, const ViewPoint& p, const LightView& light,
-                          [[maybe_unused]] const Window<grid>& window, Scratch& scratch) {
-  if constexpr (grid)
-    rasterise_on_grid<crossing>(block, p, light, scratch);
-  else
-    rasterise_on_set(block, p, light, window, scratch);
-}
+// The blocks of a group whose boxes may hide a light sample that is still open.
+struct FoundBlocks {
+  const Occluders& scene;
+  Scratch& scratch;
 
-// Blocks whose boxes may hide a light sample that is still open.
-template <bool grid>
-HWY_INLINE void rasterise_found(const Occluders& scene, const ViewPoint& p, const PointBox& box,
-                                const Window<grid>& window, Scratch& scratch) {
-  const Floats d;
-  const hn::RebindToSigned<Floats> di;
-  const LightView& light = *scene.light;
-  const std::size_t lanes = hn::Lanes(d);
-  alignas(64) int32_t c0[block_size], c1[block_size], r0[block_size], r1[block_size];
-  for (std::size_t o = 0; o < scratch.found.size(); o += lanes) {
-    const BoxVectors boxes = load_boxes(scratch.found_boxes, o);
-    uint32_t bits;
-    if constexpr (grid) {
-      const Rectangles rect = rectangles_of(boxes, box, light);
-      bits = bits_of(rect.some);
-      if (!bits) continue;
-      hn::Store(hn::ConvertTo(di, rect.c0), di, c0), hn::Store(hn::ConvertTo(di, rect.c1), di, c1);
-      hn::Store(hn::ConvertTo(di, rect.r0), di, r0), hn::Store(hn::ConvertTo(di, rect.r1), di, r1);
-    } else {
-      bits = bits_of(window.meets(boxes));
-    }
-    bool entered = false;
-    for (; bits; bits &= bits - 1) {
-      const auto l = static_cast<std::size_t>(__builtin_ctz(bits));
-      if constexpr (grid)
-        if (!is_open(scratch.mask, c0[l], c1[l], r0[l], r1[l], light.parts)) continue;
-      ++scratch.counts.blocks_entered;
-      entered = true;
-      rasterise<grid, false>(scene.blocks[scratch.found[o + l]], p, light, window, scratch);
-    }
-    if (entered && all_blocked<grid>(light, scratch.mask)) return;
-  }
-}
-
-// One view sample's mask, but for begin and write: the triangles of the list, then whatever `rest` adds.
-template <bool grid, class Rest>
-HWY_INLINE void make_mask(const Occluders& scene, const ViewPoint& p, Scratch& scratch, const Rest& rest) {
-  const LightView& light = *scene.light;
-  if (scene.masks->begin(p.pixel, scratch.mask)) {
-    const PointBox box = box_of(&p, 1);
-    const Window<grid> window(box, light);
-    if constexpr (!grid) look_at_set(light, p, scratch);
-    for (std::size_t i = 0; i < scratch.listed_count; i += block_size)
-      rasterise<grid, true>(scratch.listed[i / block_size], p, light, window, scratch);
-    if (scratch.listed_count == 0 || !all_blocked<grid>(light, scratch.mask)) rest(box, window);
-  }
-  scene.masks->write(p.pixel, scratch.mask);
-}
-
-template <bool grid>
-HWY_INLINE void walk_tree_as(const Occluders& scene, const ViewPoint* points, std::size_t count,
-                             Scratch& scratch) {
-  const PointBox box = box_of(points, count);
-  const Window<grid> window(box, *scene.light);
-  find_blocks<grid>(scene, window, scratch);
-  choose_listed<grid>(scene, box, window, scratch);
-  ++scratch.counts.groups, scratch.counts.view_samples += count;
-  for (std::size_t i = 0; i < count; ++i)
-    make_mask<grid>(scene, points[i], scratch,
-                    [&](const PointBox& at, const Window<grid>& of_sample)
-                        HWY_ATTR { rasterise_found<grid>(scene, points[i], at, of_sample, scratch); });
-}
-
-template <bool grid>
-HWY_INLINE void walk_cell_as(const Occluders& scene, std::size_t triangles, const ViewPoint* points,
-                             std::size_t count, Scratch& scratch) {
-  const PointBox box = box_of(points, count);
-  const Window<grid> window(box, *scene.light);
-  choose_listed<grid>(scene, box, window, scratch);
-  ++scratch.counts.groups, scratch.counts.view_samples += count;
-  for (std::size_t i = 0; i < count; ++i)
-    make_mask<grid>(scene, points[i], scratch, [&](const PointBox&, const Window<grid>& of_sample) HWY_ATTR {
-      for (std::size_t t = 0; t < triangles; t += block_size) {
-        rasterise<grid, false>(scratch.cell[t / block_size], points[i], *scene.light, of_sample, scratch);
-        if (t % (4 * block_size) == 0 && all_blocked<grid>(*scene.light, scratch.mask)) return;
+  template <class M>
+  HWY_INLINE void add_to(M& mask, const PointBox& box, const Window<M::grid>& window) const {
+    const std::size_t lanes = hn::Lanes(Floats());
+    Ranges ranges{};
+    for (std::size_t o = 0; o < scratch.found.size(); o += lanes) {
+      uint32_t bits = meeting<M>(load_boxes(scratch.found_boxes, o), box, window, ranges);
+      bool entered = false;
+      for (; bits; bits &= bits - 1) {
+        const auto l = static_cast<std::size_t>(__builtin_ctz(bits));
+        if constexpr (M::grid)
+          if (!mask.is_open({ranges.c0[l], ranges.c1[l], ranges.r0[l], ranges.r1[l]})) continue;
+        ++scratch.counts.blocks_entered;
+        entered = true;
+        mask.template add<false>(scene.blocks[scratch.found[o + l]], window);
       }
-    });
+      if (entered && mask.all_blocked()) return;
+    }
+  }
+
+ private:
+  struct Ranges {
+    alignas(64) int32_t c0[block_size], c1[block_size], r0[block_size], r1[block_size];
+  };
+  template <class M>
+  HWY_INLINE uint32_t meeting(const BoxVectors& boxes, const PointBox& box, const Window<M::grid>& window,
+                              [[maybe_unused]] Ranges& ranges) const {
+    if constexpr (!M::grid) {
+      return bits_of(window.meets(boxes));
+    } else {
+      const hn::RebindToSigned<Floats> di;
+      const Rectangles rect = rectangles_of(boxes, box, *scene.light);
+      const uint32_t bits = bits_of(rect.some);
+      if (bits == 0) return bits;
+      hn::Store(hn::ConvertTo(di, rect.c0), di, ranges.c0),
+          hn::Store(hn::ConvertTo(di, rect.c1), di, ranges.c1);
+      hn::Store(hn::ConvertTo(di, rect.r0), di, ranges.r0),
+          hn::Store(hn::ConvertTo(di, rect.r1), di, ranges.r1);
+      return bits;
+    }
+  }
+};
+
+// The triangles of a cell.
+struct CellTriangles {
+  std::size_t count;
+  Scratch& scratch;
+
+  template <class M>
+  HWY_INLINE void add_to(M& mask, const PointBox&, const Window<M::grid>& window) const {
+    for (std::size_t t = 0; t < count; t += block_size) {
+      mask.template add<false>(scratch.cell[t / block_size], window);
+      if (t % (4 * block_size) == 0 && mask.all_blocked()) return;
+    }
+  }
+};
+
+// The masks of a group: the triangles of the list, then those of `from`.
+template <class M, class From>
+HWY_INLINE void make_masks(const Occluders& scene, const From& from, const ViewPoint* points,
+                           std::size_t count, Scratch& scratch) {
+  const LightView& light = *scene.light;
+  ++scratch.counts.groups, scratch.counts.view_samples += count;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ViewPoint& p = points[i];
+    if (scene.masks->begin(p.pixel, scratch.mask)) {
+      const PointBox box = box_of(&p, 1);
+      const Window<M::grid> window(box, light);
+      M mask(light, p, scratch);
+      for (std::size_t t = 0; t < scratch.listed_count; t += block_size)
+        mask.template add<true>(scratch.listed[t / block_size], window);
+      if (scratch.listed_count == 0 || !mask.all_blocked()) from.add_to(mask, box, window);
+      mask.finish();
+    }
+    scene.masks->write(p.pixel, scratch.mask);
+  }
+}
+
+template <class M>
+HWY_NOINLINE void walk_tree_as(const Occluders& scene, const ViewPoint* points, std::size_t count,
+                               Scratch& scratch) {
+  const PointBox box = box_of(points, count);
+  const Window<M::grid> window(box, *scene.light);
+  find_blocks<M::grid>(scene, box, window, scratch);
+  choose_listed<M::grid>(scene, box, window, scratch);
+  make_masks<M>(scene, FoundBlocks{scene, scratch}, points, count, scratch);
+}
+
+template <class M>
+HWY_NOINLINE void walk_cell_as(const Occluders& scene, std::size_t triangles, const ViewPoint* points,
+                               std::size_t count, Scratch& scratch) {
+  const PointBox box = box_of(points, count);
+  const Window<M::grid> window(box, *scene.light);
+  choose_listed<M::grid>(scene, box, window, scratch);
+  make_masks<M>(scene, CellTriangles{triangles, scratch}, points, count, scratch);
+}
+
+// walk(type of mask) with the one that fits the light.
+template <class M>
+struct MaskType {
+  using type = M;
+};
+template <class Walk>
+HWY_INLINE void with_mask_of(const LightView& light, const Walk& walk) {
+  if (!light.grid) return walk(MaskType<SetMask>());
+#if !HWY_HAVE_SCALABLE
+  constexpr std::size_t lanes = hn::MaxLanes(Floats()), most = 4;
+  [[maybe_unused]] const auto rows = static_cast<std::size_t>(light.rows);
+  if constexpr (16 / lanes <= most)
+    if (light.parts == 1 && rows <= 16) return walk(MaskType<GridMask<RowsInRegisters<16 / lanes>>>());
+  if constexpr (32 / lanes <= most)
+    if (light.parts == 1 && rows <= 32) return walk(MaskType<GridMask<RowsInRegisters<32 / lanes>>>());
+#endif
+  walk(MaskType<GridMask<RowsInMemory>>());
 }
 
 }  // namespace penumbra::gears::cpu::HWY_NAMESPACE

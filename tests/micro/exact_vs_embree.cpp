@@ -1,17 +1,20 @@
 // The exact techniques that run on the host, all their per-frame stages, against Embree's fastest packets in
 // one run, on the study's scenes, and what each stage takes:
 //   micro_exact_vs_embree [SCENE ...] [k=16,32] [techniques=depth,clusters,triangles] [resolution=512]
-//   [light_size=D] [dynamic=true] [soup=true] [quick=true] [packets=8,16] [avx2=true]
-//   [--benchmark_repetitions=5] [--benchmark_enable_random_interleaving=true]
+//   [light_size=D] [dynamic=true] [soup=true] [holes=0.1] [quick=true] [packets=8,16] [avx2=true]
+//   [counters=true] [--benchmark_repetitions=5]
 // techniques: depth_complexity_sampling, and gears with backend=cpu and either assignment; depth and clusters
 // by default. Each stage's milliseconds are printed as counters; find_edges_once and order_triangles_once are
 // made once for a topology, no part of a frame. Scenes are names under configs/scenes (the study_* scenes
 // that are there by default). The opponent is ray_tracing, not robust, with packets of 8 and 16 rays and both
 // coherence hints (dynamic: with its own choice of packet, at its low, medium and refitted build qualities):
 // the fastest counts. light_size: the rectangle's diagonal. dynamic: all sides take the vertices anew each
-// frame, and building counts. soup: each triangle shrunk by a thousandth, so that every edge is open. quick:
-// one opponent, ray_tracing as it chooses for itself. packets: those of the opponent. avx2: the techniques,
-// not Embree, without AVX-512. The table ends with the ratios of the medians.
+// frame, and building counts. soup: each triangle shrunk by a thousandth, so that every edge is open. holes:
+// that share of the triangles left out. quick: one opponent, ray_tracing as it chooses for itself; none: no
+// opponent. packets: those of the opponent. avx2: the techniques, not Embree, without AVX-512. counters:
+// prints those of the techniques. Repetitions come in random order; each technique's first frame is not
+// counted. processor_ms is that of all threads for a frame; `others` is the share of the processors that
+// other programs had meanwhile. The table ends with the ratios of the medians and their 95 % intervals.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <hwy/targets.h>
@@ -22,6 +25,8 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "run/processors.h"
+#include "run/statistics.h"
 #include "techniques/registry.h"
 #include "tests/techniques/depth_complexity_render.h"
 
@@ -36,7 +41,8 @@ struct Options {
   std::vector<std::string> techniques = {"depth", "clusters"};
   int resolution = 512;
   float light_size = -1;
-  bool dynamic = false, soup = false, quick = false, avx2 = false;
+  double holes = 0;
+  bool dynamic = false, soup = false, quick = false, none = false, avx2 = false, counters = false;
   std::vector<std::string> packets = {"8", "16"};
 };
 
@@ -59,12 +65,18 @@ struct HostRun {
     taken();
     for (const char* name_once : {"find_edges", "order_triangles"})
       if (passes.contains(name_once)) once[name_once] = passes[name_once];
+    render();  // not counted
+    taken();
   }
   void build() { technique->build(scene.scene_case, scene.passes); }
   void render() {
     RenderInput in;
     in.scene_case = &scene.scene_case, in.view_samples = scene.view.get(), in.host = {visibility, mask};
     technique->render(in, scene.passes);
+  }
+  void print_counters(const std::string& of) {
+    for (const auto& [counter, value] : technique->counters())
+      if (const double* number = std::get_if<double>(&value)) fmt::print("{} {}: {}\n", of, counter, *number);
   }
   double taken() {
     double ms = 0;
@@ -74,14 +86,18 @@ struct HostRun {
 };
 
 void measure(benchmark::State& state, HostRun& run, bool dynamic) {
-  run.render();
-  run.taken();
   run.passes.clear();
+  const auto before = penumbra::run::processor_use();
+  const double processor = penumbra::run::process_cpu_s();
   for ([[maybe_unused]] auto _ : state) {
     if (dynamic) run.build();
     run.render();
     state.SetIterationTime(run.taken() / 1000);
   }
+  state.counters["processor_ms"] = benchmark::Counter((penumbra::run::process_cpu_s() - processor) * 1e3,
+                                                      benchmark::Counter::kAvgIterations);
+  if (const auto others = penumbra::run::others_share(before, penumbra::run::processor_use()))
+    state.counters["others"] = *others;
   for (const auto& [name, ms] : run.once) state.counters[name + "_once"] = ms;
   for (const auto& [name, ms] : run.passes)
     state.counters[name] = benchmark::Counter(ms, benchmark::Counter::kAvgIterations);
@@ -96,6 +112,7 @@ struct Contest {
 std::unique_ptr<DeviceScene> load(gpu::Device& device, const Options& options, const std::string& name,
                                   int k) {
   Frame frame = Scene::load(name, {"configs/scenes"}).frame(0, "", "", options.light_size);
+  if (options.holes > 0) testing::remove_triangles(frame.geometry, options.holes, 2);
   if (options.soup) testing::make_soup(frame.geometry, 1e-3F);
   return std::make_unique<DeviceScene>(device, std::move(frame), options.resolution, options.resolution,
                                        LightSampleRequest{k, k});
@@ -107,7 +124,10 @@ void add(gpu::Device& device, const Options& options, const std::string& name, i
     const auto run = [=, &device, &options, &contest](benchmark::State& s) {
       if (!contest.scene) contest.scene = load(device, options, name, k);
       auto& r = contest.runs[label];
-      if (!r) r = std::make_unique<HostRun>(*contest.scene, technique, params);
+      if (!r) {
+        r = std::make_unique<HostRun>(*contest.scene, technique, params);
+        if (options.counters && !label.starts_with("embree")) r->print_counters(name + " " + label);
+      }
       measure(s, *r, options.dynamic);
     };
     benchmark::RegisterBenchmark(fmt::format("{}/k:{}/{}", name, k, label).c_str(), run)
@@ -117,6 +137,8 @@ void add(gpu::Device& device, const Options& options, const std::string& name, i
   if (options.dynamic)
     for (const std::string quality : {"low", "medium", "refit"})
       add_one("embree_" + quality, "ray_tracing", {{"dynamic", true}, {"build_quality", quality}});
+  else if (options.none)
+    ;
   else if (options.quick)
     add_one("embree", "ray_tracing", {});
   else
@@ -142,27 +164,41 @@ class Ratios : public benchmark::ConsoleReporter {
     ConsoleReporter::ReportRuns(runs);
   }
   void Finalize() override {
-    std::map<std::string, double> embree;                       // by scene and k
-    std::map<std::string, std::map<std::string, double>> ours;  // and by technique
-    for (auto& [name, times] : times_) {
-      std::ranges::sort(times);
-      const double median = times[times.size() / 2];
-      const std::size_t slash = name.rfind('/');
-      const std::string scene = name.substr(0, slash), label = name.substr(slash + 1);
-      if (label.starts_with("embree")) {
-        const double before = embree.contains(scene) ? embree[scene] : INFINITY;
-        embree[scene] = std::min(before, median);
-      } else {
-        ours[scene][label] = median;
-      }
+    std::map<std::string, std::string> fastest;  // opponent, by scene and k
+    for (const auto& [name, times] : times_) {
+      const auto [contest, label] = parts(name);
+      if (!label.starts_with("embree")) continue;
+      std::string& best = fastest[contest];
+      if (best.empty() || median(times) < median(times_[best])) best = name;
     }
-    for (const auto& [scene, by_technique] : ours)
-      for (const auto& [label, ms] : by_technique)
-        fmt::print("{}: embree {:.0f} ms, {} {:.1f} ms: {:.2f} times as fast\n", scene, embree[scene], label,
-                   ms, embree[scene] / ms);
+    for (const auto& [name, times] : times_) {
+      const auto [contest, label] = parts(name);
+      if (!label.starts_with("embree") && fastest.contains(contest)) print(name, fastest[contest]);
+    }
   }
 
  private:
+  static std::pair<std::string, std::string> parts(const std::string& name) {
+    const std::size_t slash = name.rfind('/');
+    return {name.substr(0, slash), name.substr(slash + 1)};
+  }
+  static double median(std::vector<double> times) {
+    std::ranges::sort(times);
+    return penumbra::run::quantile(times, 0.5);
+  }
+  void print(const std::string& name, const std::string& opponent) {
+    const std::vector<double>&own = times_[name], &embree = times_[opponent];
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min(own.size(), embree.size()); ++i)
+      ratios.push_back(embree[i] / own[i]);
+    std::ranges::sort(ratios);
+    const auto interval = penumbra::run::median_interval(ratios);
+    const auto [contest, label] = parts(name);
+    fmt::print("{}: {} {:.0f} ms, {} {:.1f} ms: {:.2f} times as fast, {:.2f} to {:.2f} in {} repetitions\n",
+               contest, parts(opponent).second, median(embree), label, median(own),
+               median(embree) / median(own), interval[0], interval[1], ratios.size());
+  }
+
   std::map<std::string, std::vector<double>> times_;
 };
 
@@ -198,6 +234,12 @@ Options read(int argc, char** argv) {
       o.soup = value == "true";
     } else if (key == "quick") {
       o.quick = value == "true";
+    } else if (key == "none") {
+      o.none = value == "true";
+    } else if (key == "holes") {
+      o.holes = std::stod(value);
+    } else if (key == "counters") {
+      o.counters = value == "true";
     } else if (key == "avx2") {
       o.avx2 = value == "true";
     } else if (key == "packets") {
@@ -207,7 +249,7 @@ Options read(int argc, char** argv) {
     } else {
       throw InputError("Unknown option '" + key + "'." +
                        suggestion(key, {"k", "techniques", "resolution", "light_size", "dynamic", "soup",
-                                        "quick", "packets", "avx2"}));
+                                        "holes", "quick", "none", "packets", "avx2", "counters"}));
     }
   }
   if (o.scenes.empty())
@@ -221,9 +263,14 @@ Options read(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace penumbra;
-  benchmark::Initialize(&argc, argv);
+  // Google Benchmark draws an order of its own only when asked.
+  std::vector<char*> args(argv, argv + argc);
+  char interleave[] = "--benchmark_enable_random_interleaving=true";
+  args.insert(args.begin() + 1, interleave);
+  int count = static_cast<int>(args.size());
+  benchmark::Initialize(&count, args.data());
   try {
-    const Options options = read(argc, argv);
+    const Options options = read(count, args.data());
     // Smaller is wider.
     if (options.avx2) hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & ~(HWY_AVX2 - 1));
     gpu::Device device{gpu::DeviceOptions{}};

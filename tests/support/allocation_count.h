@@ -1,6 +1,7 @@
-// Counts calls of operator new in the test program that uses it.
+// Counts what the test program that uses it allocates, in any thread and library.
 #pragma once
 
 namespace penumbra::testing {
+// Calls of malloc and its like so far (under the sanitizers: of operator new).
 long allocation_count();
 }

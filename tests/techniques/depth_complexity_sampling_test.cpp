@@ -6,9 +6,9 @@
 
 #include "techniques/common/exact_choice.h"
 #include "techniques/depth_complexity_sampling/kernel.h"
-#include "tests/support/allocation_count.h"
 #include "tests/support/host_view.h"
 #include "tests/techniques/depth_complexity_render.h"
+#include "tests/techniques/frame_allocations.h"
 
 namespace penumbra {
 namespace {
@@ -280,20 +280,18 @@ TEST(DepthComplexitySampling, PartsWhatWasWelded) {
   testing::expect_the_reference(scene, run.mask, "parted", 1e-4);
 }
 
-TEST(DepthComplexitySampling, AllocatesNothingPerFrame) {
-  DeviceScene scene(device(), soup_frame(), 97, 71, {16, 16});
-  DepthComplexityRun run(scene);
-  run.build();
-  const auto allocations = [&] {
-    const long before = testing::allocation_count();
-    run.render();
-    return testing::allocation_count() - before;
-  };
-  allocations();
-  scene.passes.take_times();
-  allocations();
-  scene.passes.take_times();
-  EXPECT_LE(allocations(), 8);  // the recorder's list of passes
+TEST(DepthComplexitySampling, AllocatesNothingAfterTheFirstFrames) {
+  for (const LightSampleRequest& request : {LightSampleRequest{16, 16}, LightSampleRequest{40, 40},
+                                            LightSampleRequest{0, 0, 90, LightPattern::halton, 1}}) {
+    DeviceScene scene(device(), soup_frame(), 97, 71, request);
+    DepthComplexityRun run(scene);
+    run.build();
+    for (int i = 0; i < 3; ++i) run.render();
+    const uint64_t bytes = run.technique().structure_bytes();
+    for (int i = 0; i < 5; ++i)
+      EXPECT_EQ(testing::frame_allocations(scene.passes, [&] { run.render(); }), 0) << scene.samples.count();
+    EXPECT_EQ(run.technique().structure_bytes(), bytes);
+  }
 }
 
 TEST(DepthComplexitySampling, CountsEdgesAndRays) {

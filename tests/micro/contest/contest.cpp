@@ -34,11 +34,12 @@ class Contestant {
   Contestant(DeviceScene& scene, const std::string& name, const ParamValues& given) : scene_(scene) {
     const Registry registry = all_techniques();
     const TechniqueInfo& info = find_technique(registry, name);
-    technique_ = info.make(resolve(info.params, given, name));
+    const ParamValues params = resolve(info.params, given, name);
+    technique_ = info.make(params);
     if (const auto reason = technique_->supports(scene.scene_case)) throw InputError(*reason);
     const std::size_t pixels = scene.view->host().pixel_count(),
                       words = pixels * static_cast<std::size_t>(scene.samples.mask_words());
-    if (info.residence == Residence::host) {
+    if (info.residence_with(params) == Residence::host) {
       host_visibility_.resize(pixels), host_mask_.resize(words);
       in_.host = {host_visibility_, host_mask_};
     } else {
