@@ -83,19 +83,31 @@ void HostMasks::keep_above_horizon(std::size_t pixel, uint64_t* words) const {
   const auto height = [&](std::size_t i) {
     return n.x * (x_[i] - p.x) + n.y * (y_[i] - p.y) + n.z * (z_[i] - p.z);
   };
+  const auto first_bits = [](std::size_t count) {
+    return count < 64 ? (uint64_t{1} << count) - 1 : ~uint64_t{0};
+  };
   for (std::size_t w = 0; w < all_.size(); ++w) {
-    const std::size_t first = w * columns_, last = std::min(samples_, first + columns_) - 1;
-    // A row of a grid is straight: its ends tell for all that lies between them, beyond any rounding.
+    const std::size_t first = w * columns_, count = std::min(samples_ - first, columns_);
+    std::size_t from = 0, to = count;  // samples to look at
+    uint64_t above = 0;
+    // A row of a grid is straight: its ends tell for all of it, but for what lies within rounding of the
+    // horizon.
     if (layout_.grid) {
-      const float a = height(first), b = height(last);
+      const float a = height(first), b = height(first + count - 1);
       if (std::min(a, b) > rounding) continue;
       if (std::max(a, b) < -rounding) {
         words[w] = 0;
         continue;
       }
+      if (std::abs(a - b) > 8 * rounding) {
+        const float steps = static_cast<float>(count - 1) / std::abs(a - b), middle = std::abs(a) * steps,
+                    reach = 2 * rounding * steps;
+        from = static_cast<std::size_t>(std::max(middle - reach, 0.0F));
+        to = std::min(count, static_cast<std::size_t>(middle + reach) + 2);
+        above = (a > 0 ? first_bits(from) : 0) | (b > 0 ? ~first_bits(to) : 0);
+      }
     }
-    uint64_t above = 0;
-    for (std::size_t i = first; i <= last; ++i) above |= static_cast<uint64_t>(height(i) > 0) << (i - first);
+    for (std::size_t i = from; i < to; ++i) above |= static_cast<uint64_t>(height(first + i) > 0) << i;
     words[w] &= above;
   }
 }

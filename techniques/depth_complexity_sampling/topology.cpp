@@ -1,9 +1,13 @@
 #include "techniques/depth_complexity_sampling/topology.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
+#include <new>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -315,6 +319,20 @@ void list_edges(Buckets& b, const Array<Vec3f>& positions, EdgeTopology& out) {
 }
 
 }  // namespace
+
+void* allocate_array(std::size_t bytes) {
+  constexpr std::size_t large_page = std::size_t{2} << 20;
+  void* p = nullptr;
+  if (bytes < 2 * large_page) {
+    p = std::malloc(bytes);
+  } else if (posix_memalign(&p, large_page, bytes) == 0) {
+    madvise(p, bytes / large_page * large_page, MADV_HUGEPAGE);  // a wish: without it pages are small
+  }
+  if (!p) throw std::bad_alloc();
+  return p;
+}
+
+void free_array(void* p) { std::free(p); }
 
 EdgeTopology find_edges(const Geometry& geometry) {
   EdgeTopology out;

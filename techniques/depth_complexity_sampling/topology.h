@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -19,17 +20,27 @@ struct Edge {
   bool open() const { return second_face() == face; }
 };
 
-// Leaves new elements as they are: filling large arrays that threads are about to write would be one thread's
-// work, and most of it the first touch of their memory.
+// Memory for large arrays in large pages, where the system has them: most of what a fresh array costs is the
+// first touch of each of its pages. Throws std::bad_alloc.
+void* allocate_array(std::size_t bytes);
+void free_array(void* p);
+
+// Leaves new elements as they are: filling arrays that threads are about to write would be one thread's work.
 template <class T>
 struct Unfilled : std::allocator<T> {
   template <class U>
   struct rebind {
     using other = Unfilled<U>;
   };
+  T* allocate(std::size_t n) { return static_cast<T*>(allocate_array(n * sizeof(T))); }
+  void deallocate(T* p, std::size_t) { free_array(p); }
   template <class U>
   void construct(U* p) noexcept {
     ::new (static_cast<void*>(p)) U;
+  }
+  template <class U, class V, class... More>
+  void construct(U* p, V&& first, More&&... more) {
+    ::new (static_cast<void*>(p)) U(std::forward<V>(first), std::forward<More>(more)...);
   }
 };
 template <class T>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "techniques/common/point_groups.h"
+
 namespace penumbra::depth_complexity {
 namespace {
 
@@ -9,27 +11,10 @@ std::size_t tiles_across(int pixels) {
   return static_cast<std::size_t>((pixels + tile_side - 1) / tile_side);
 }
 
-// Cuts at multiples of the group sizes, so that groups are full but for the last.
-void order(ViewPoint* p, std::size_t n) {
-  if (n <= small_group) return;
-  const std::size_t unit = n > large_group ? large_group : n > middle_group ? middle_group : small_group;
-  const std::size_t half = std::max(unit, (n / 2 + unit / 2) / unit * unit);
-  float lo[3] = {p->x, p->y, p->z}, hi[3] = {p->x, p->y, p->z};
-  for (std::size_t i = 1; i < n; ++i) {
-    const float v[3] = {p[i].x, p[i].y, p[i].z};
-    for (int k = 0; k < 3; ++k) lo[k] = std::min(lo[k], v[k]), hi[k] = std::max(hi[k], v[k]);
-  }
-  const float size[3] = {hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]};
-  const auto cut = [&](float ViewPoint::*axis) {
-    std::nth_element(p, p + half, p + n,
-                     [axis](const ViewPoint& a, const ViewPoint& b) { return a.*axis < b.*axis; });
-  };
-  if (size[0] >= size[1] && size[0] >= size[2])
-    cut(&ViewPoint::x);
-  else
-    size[1] >= size[2] ? cut(&ViewPoint::y) : cut(&ViewPoint::z);
-  order(p, half);
-  order(p + half, n - half);
+// Multiples of the groups' sizes, the largest first.
+std::size_t unit_of(std::size_t n) {
+  if (n <= small_group) return 0;
+  return n > large_group ? large_group : n > middle_group ? middle_group : small_group;
 }
 
 }  // namespace
@@ -64,7 +49,8 @@ std::size_t gather_tile(const ViewSamplesHost& view, std::size_t tile, const Lig
       }
       out[count++] = {p.x, p.y, p.z, static_cast<uint32_t>(pixel), horizon == HostMasks::Horizon::across};
     }
-  order(out, count);
+  ViewPoint spare[tile_pixels];
+  order_in_groups(out, spare, count, unit_of);
   return count;
 }
 

@@ -184,7 +184,7 @@ void Backend::do_cell(std::size_t cell, std::size_t triangles, Scratch& scratch)
                         triangles_.first_leaf(),
                         triangles_.listed().data(),
                         triangles_.listed_count()};
-  order_groups(points.data(), points.size());
+  order_groups(points, scratch.points);
   each_group(points.size(), [&](std::size_t begin, std::size_t count) {
     if (clusters())
       walk_tree(scene, points.data() + begin, count, scratch);

@@ -56,7 +56,7 @@ void Scratch::grow_like(const Scratch& o) {
   };
   stack.reserve(o.stack.capacity()), found.reserve(o.found.capacity());
   for (std::size_t f = 0; f < box_fields; ++f) as(found_boxes[f], o.found_boxes[f]);
-  as(sizes, o.sizes), as(ordered, o.ordered);
+  as(sizes, o.sizes), as(ordered, o.ordered), as(points, o.points);
   as(listed, o.listed), as(cell, o.cell);
   as(to_x, o.to_x), as(to_y, o.to_y), as(to_z, o.to_z);
 }

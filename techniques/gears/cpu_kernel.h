@@ -54,6 +54,7 @@ struct WorkCounts {
 struct alignas(64) Scratch {
   // 1 = blocked, or no light sample. A grid: part q of row r is word q * most_rows + r. A set: bit by bit.
   alignas(64) uint32_t mask[most_words];
+  std::vector<ViewPoint> points;         // while they are put into groups
   std::vector<uint32_t> stack, found;    // nodes to visit; blocks that may matter to the group
   Boxes found_boxes;                     // theirs
   std::vector<uint32_t> sizes, ordered;  // while they are ordered
