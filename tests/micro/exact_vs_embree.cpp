@@ -14,7 +14,9 @@
 // opponent. packets: those of the opponent. avx2: the techniques, not Embree, without AVX-512. counters:
 // prints those of the techniques. Repetitions come in random order; each technique's first frame is not
 // counted. processor_ms is that of all threads for a frame; `others` is the share of the processors that
-// other programs had meanwhile. The table ends with the ratios of the medians and their 95 % intervals.
+// other programs had meanwhile. The table ends with the ratios of the medians and their 95 % intervals: of
+// the repetitions during which other programs had at most a tenth of the processors, and of all of them by
+// processor time.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <hwy/targets.h>
@@ -158,48 +160,65 @@ void add(gpu::Device& device, const Options& options, const std::string& name, i
 class Ratios : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {
-    for (const Run& run : runs)
-      if (run.run_type == Run::RT_Iteration)
-        times_[run.run_name.function_name].push_back(run.GetAdjustedRealTime());
+    for (const Run& run : runs) {
+      if (run.run_type != Run::RT_Iteration) continue;
+      Measured& m = measured_[run.run_name.function_name];
+      const auto others = run.counters.find("others");
+      if (others != run.counters.end() && others->second.value > penumbra::run::busy_share)
+        ++m.disturbed;
+      else
+        m.ms.push_back(run.GetAdjustedRealTime());
+      m.processor_ms.push_back(run.counters.at("processor_ms").value);
+    }
     ConsoleReporter::ReportRuns(runs);
   }
   void Finalize() override {
     std::map<std::string, std::string> fastest;  // opponent, by scene and k
-    for (const auto& [name, times] : times_) {
+    for (const auto& [name, m] : measured_) {
       const auto [contest, label] = parts(name);
       if (!label.starts_with("embree")) continue;
       std::string& best = fastest[contest];
-      if (best.empty() || median(times) < median(times_[best])) best = name;
+      if (best.empty() || median(m.processor_ms) < median(measured_[best].processor_ms)) best = name;
     }
-    for (const auto& [name, times] : times_) {
+    for (const auto& [name, m] : measured_) {
       const auto [contest, label] = parts(name);
       if (!label.starts_with("embree") && fastest.contains(contest)) print(name, fastest[contest]);
     }
   }
 
  private:
+  struct Measured {
+    std::vector<double> ms, processor_ms;
+    int disturbed = 0;
+  };
   static std::pair<std::string, std::string> parts(const std::string& name) {
     const std::size_t slash = name.rfind('/');
     return {name.substr(0, slash), name.substr(slash + 1)};
   }
   static double median(std::vector<double> times) {
     std::ranges::sort(times);
-    return penumbra::run::quantile(times, 0.5);
+    return times.empty() ? NAN : penumbra::run::quantile(times, 0.5);
   }
-  void print(const std::string& name, const std::string& opponent) {
-    const std::vector<double>&own = times_[name], &embree = times_[opponent];
+  // Median of the first over that of the second, and its 95 % interval, run by run.
+  static std::string ratio(const std::vector<double>& embree, const std::vector<double>& own) {
     std::vector<double> ratios;
     for (std::size_t i = 0; i < std::min(own.size(), embree.size()); ++i)
       ratios.push_back(embree[i] / own[i]);
+    if (ratios.empty()) return "no undisturbed repetition";
     std::ranges::sort(ratios);
     const auto interval = penumbra::run::median_interval(ratios);
+    return fmt::format("{:.2f} times as fast, {:.2f} to {:.2f} in {} repetitions",
+                       median(embree) / median(own), interval[0], interval[1], ratios.size());
+  }
+  void print(const std::string& name, const std::string& opponent) {
+    const Measured &own = measured_[name], &embree = measured_[opponent];
     const auto [contest, label] = parts(name);
-    fmt::print("{}: {} {:.0f} ms, {} {:.1f} ms: {:.2f} times as fast, {:.2f} to {:.2f} in {} repetitions\n",
-               contest, parts(opponent).second, median(embree), label, median(own),
-               median(embree) / median(own), interval[0], interval[1], ratios.size());
+    fmt::print("{}: {} {:.0f} ms, {} {:.1f} ms: {} ({} disturbed)\n  by processor time: {}\n", contest,
+               parts(opponent).second, median(embree.ms), label, median(own.ms), ratio(embree.ms, own.ms),
+               own.disturbed + embree.disturbed, ratio(embree.processor_ms, own.processor_ms));
   }
 
-  std::map<std::string, std::vector<double>> times_;
+  std::map<std::string, Measured> measured_;
 };
 
 Options read(int argc, char** argv) {
