@@ -11,10 +11,12 @@ namespace {
 
 constexpr std::size_t max_outside = 32;
 constexpr float outside_share = 0.25f;  // of the scene's diagonal
+constexpr std::size_t most_weighed = 1024;
 
 struct Item {
   Vec3f center;
   uint32_t triangle = 0;
+  Box box;
 };
 
 uint64_t spread(uint64_t x) {
@@ -32,6 +34,63 @@ Box centers(const Item* begin, const Item* end) {
   return box;
 }
 
+Box boxes(const Item* begin, const Item* end) {
+  Box box;
+  for (const Item* i = begin; i != end; ++i) box.extend(i->box.lo), box.extend(i->box.hi);
+  return box;
+}
+
+// Of a box's surface, half: as likely does a line meet it that meets the box around it.
+float surface(const Box& box) {
+  const Vec3f d = box.hi - box.lo;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+bool before(const Item& a, const Item& b, int axis) {
+  return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.triangle < b.triangle;
+}
+
+struct Cut {
+  int axis = 0;
+  std::size_t left = 0;  // items before the cut
+};
+
+// Many items: in the middle, across the longest axis.
+Cut middle_cut(const Item* begin, const Item* end, std::size_t capacity) {
+  const std::size_t count = static_cast<std::size_t>(end - begin);
+  const Vec3f size = [&] {
+    const Box box = centers(begin, end);
+    return box.hi - box.lo;
+  }();
+  const std::size_t parts = (count + capacity - 1) / capacity;
+  return {size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2, (parts + 1) / 2 * capacity};
+}
+
+// Few items: where both sides' boxes have least surface, each weighted by its parts.
+Cut best_cut(const Item* begin, const Item* end, std::size_t capacity) {
+  std::vector<Item> items(begin, end);
+  const std::size_t parts = (items.size() + capacity - 1) / capacity;
+  std::vector<float> cost(parts);
+  Cut best;
+  float least = INFINITY;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::ranges::sort(items, [axis](const Item& a, const Item& b) { return before(a, b, axis); });
+    const Item *first = items.data(), *last = first + items.size();
+    Box left, right;
+    const auto grow = [](Box& box, const Box& more) { box.extend(more.lo), box.extend(more.hi); };
+    for (std::size_t k = 1; k < parts; ++k) {
+      grow(left, boxes(first + (k - 1) * capacity, first + k * capacity));
+      cost[k] = surface(left) * static_cast<float>(k);
+    }
+    for (std::size_t k = parts - 1; k > 0; --k) {
+      grow(right, boxes(first + k * capacity, std::min(first + (k + 1) * capacity, last)));
+      cost[k] += surface(right) * static_cast<float>(parts - k);
+      if (cost[k] < least) least = cost[k], best = {axis, k * capacity};
+    }
+  }
+  return best.left > 0 ? best : middle_cut(begin, end, capacity);
+}
+
 void sort_by_morton(std::vector<Item>& items) {
   const Box box = centers(items.data(), items.data() + items.size());
   const Vec3f size = box.hi - box.lo;
@@ -47,20 +106,16 @@ void sort_by_morton(std::vector<Item>& items) {
   for (std::size_t i = 0; i < items.size(); ++i) items[i].triangle = keys[i].second;
 }
 
-// Cuts [begin, end) into parts of `capacity` items, binary cuts at the middle part, then each part into parts
-// of capacity / arity, down to leaves.
+// Cuts [begin, end) into parts of `capacity` items by binary cuts between parts, then each part into parts of
+// capacity / arity, down to leaves.
 void cut(Item* begin, Item* end, std::size_t capacity, std::size_t arity) {
   const std::size_t count = static_cast<std::size_t>(end - begin);
   if (count <= arity) return;
   if (count <= capacity) return cut(begin, end, capacity / arity, arity);
-  const std::size_t parts = (count + capacity - 1) / capacity, left = (parts + 1) / 2 * capacity;
-  const Box box = centers(begin, end);
-  const Vec3f size = box.hi - box.lo;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  Item* const middle = begin + left;
-  std::nth_element(begin, middle, end, [axis](const Item& a, const Item& b) {
-    return a.center[axis] != b.center[axis] ? a.center[axis] < b.center[axis] : a.triangle < b.triangle;
-  });
+  const Cut at = count <= most_weighed ? best_cut(begin, end, capacity) : middle_cut(begin, end, capacity);
+  Item* const middle = begin + at.left;
+  std::nth_element(begin, middle, end,
+                   [axis = at.axis](const Item& a, const Item& b) { return before(a, b, axis); });
   if (count < 4096) {
     cut(begin, middle, capacity, arity);
     cut(middle, end, capacity, arity);
@@ -101,9 +156,11 @@ std::vector<uint32_t> take_outside(const Geometry& geometry, std::vector<Item>& 
 TriangleOrder order_triangles(const Geometry& geometry, uint32_t arity, SpatialOrder kind) {
   std::vector<Item> items(geometry.triangle_count());
   parallel_for(items.size(), 4096, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      items[t] = {(geometry.corner(t, 0) + geometry.corner(t, 1) + geometry.corner(t, 2)) * (1.0f / 3.0f),
-                  static_cast<uint32_t>(t)};
+    for (std::size_t t = begin; t < end; ++t) {
+      const Vec3f a = geometry.corner(t, 0), b = geometry.corner(t, 1), c = geometry.corner(t, 2);
+      items[t] = {
+          (a + b + c) * (1.0f / 3.0f), static_cast<uint32_t>(t), {min(min(a, b), c), max(max(a, b), c)}};
+    }
   });
   const std::vector<uint32_t> outside = take_outside(geometry, items);
   TriangleOrder order;

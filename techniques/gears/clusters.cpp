@@ -13,7 +13,7 @@ namespace {
 // launching one costs as much as a few nodes of the tree.
 constexpr uint32_t groups_each = 4;
 
-// Room to go on with so many groups, of which some go on as two; what finds no room goes on whole.
+// Room to go on with so many groups, of which some go on as two, while there is room.
 uint32_t resume_capacity(uint32_t groups) { return groups + groups / 2 + 1024; }
 
 }  // namespace
@@ -102,9 +102,10 @@ void Clusters::walk(FrameState& state, const RenderInput& in, gpu::PassRecorder&
                          pc.list_begin = t.list_begin;
                          pc.list_end = t.list_end;
                          pc.read_list = t.read_list;
-                         // First turns take the groups in an interleaved order, over a rectangle of 64 rows.
-                         const uint64_t columns = (uint64_t{pc.groups} + 1023) / 1024;
-                         const uint64_t work = t.resumed ? t.work_groups : columns * 1024;
+                         // First turns take the groups in an interleaved order, in chunks of 16.
+                         const uint64_t chunks = (uint64_t{pc.groups} + 15) / 16;
+                         pc.parts = t.resumed && 2 * uint64_t{t.work_groups} <= pc.capacity ? 2 : 1;
+                         const uint64_t work = t.resumed ? uint64_t{t.work_groups} * pc.parts : chunks * 16;
                          pc.work_groups = static_cast<uint32_t>(work);
                          const bool little = t.list_end - t.list_begin <= lanes;
                          pc.groups_each = !t.resumed && little ? groups_each : 1;

@@ -7,6 +7,12 @@
 
 namespace penumbra::gears {
 
+namespace {
+
+constexpr std::size_t few_triangles = 16384;
+
+}  // namespace
+
 uint32_t lanes_of(const gpu::Device& device) { return std::min(device.caps().subgroup_size, 32u); }
 
 void FrameState::set_light(const Case& c, gpu::PassRecorder& passes) {
@@ -19,6 +25,7 @@ void FrameState::set_light(const Case& c, gpu::PassRecorder& passes) {
   layout = mask_layout(c.frame->light, samples);
   constants = frame_constants(c.frame->light, samples, layout, bounds, params.extrusion_length);
   slack = 2 * relative_offset * bounds.diagonal();
+  small_triangles = c.frame->geometry.triangle_count() > few_triangles;
   const std::size_t bytes = samples.points.size() * sizeof(Vec4f);
   gpu::ensure(light_samples, *device, bytes, gpu::Memory::device, "the light samples");
   gpu::upload(passes, "upload_light", light_samples, samples.points.data(), bytes);

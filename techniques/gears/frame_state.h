@@ -24,6 +24,8 @@ struct FrameState {
   FrameConstants constants{};
   uint32_t width = 0, height = 0;
   float slack = 0;  // more than |P' - P|, world
+  // Several triangles of a leaf matter to a group, and each covers few rows.
+  bool small_triangles = true;
 
   gpu::Buffer frame, header, header_host;
   gpu::Buffer light_samples, weights;  // world; uploaded when the light changes

@@ -26,8 +26,9 @@ const ParamTable<GearsParams>& gears_params() {
     t.choice(
         "triangle_order", &P::triangle_order, {"morton", "kd"},
         {"", "",
-         "Order of the triangles in the box tree, made once: a Morton curve, or median cuts of the longest "
-         "axis (slower to make, tighter boxes)."});
+         "Order of the triangles in the box tree, made once: a Morton curve, or cuts in the middle of the "
+         "longest "
+         "axis and, of up to 1024 triangles, where boxes get smallest (slower to make, tighter boxes)."});
     t.integer("list_budget_mib", &P::list_budget_mib, 1, 16384,
               {"MiB", "",
                "Memory for the cells' lists of triangles; cells that need more are done in several turns."});

@@ -10,8 +10,11 @@ namespace {
 // walk.glsl.
 constexpr uint32_t turns_between_looks = 30000;
 
-// Words of the mask that one turn of the row loop fills: two rows, where a row takes 32 bits or more.
-uint32_t band_words(const MaskLayout& m) { return m.pitch == 64 ? 4 : m.pitch == 32 ? 2 : 1; }
+// Words of the mask that one turn of the row loop fills. Large triangles reach over many rows.
+uint32_t band_words(const MaskLayout& m, bool small_triangles) {
+  const int most = m.pitch >= 32 ? (small_triangles || m.pitch == 64 ? 4 : 8) : (small_triangles ? 1 : 2);
+  return static_cast<uint32_t>(std::min(m.words, most));
+}
 
 }  // namespace
 
@@ -67,11 +70,13 @@ const gpu::ComputePipeline& Walker::pipeline(const FrameState& state, const Vari
                                                 {10, v.begin},
                                                 {11, v.list},
                                                 {12, v.walk},
+                                                {15, state.small_triangles},
                                                 {13, state.walk_resolves() ? u(m.samples) : 0},
                                                 {20, static_cast<uint32_t>(m.move)}};
   if (m.grid) {
-    constants.insert(constants.end(),
-                     {{1, u(m.columns)}, {2, u(m.rows)}, {3, u(m.pitch)}, {14, band_words(m)}});
+    constants.insert(
+        constants.end(),
+        {{1, u(m.columns)}, {2, u(m.rows)}, {3, u(m.pitch)}, {14, band_words(m, state.small_triangles)}});
   } else {
     constants.insert(constants.end(), {{1, u(m.samples)}, {5, m.infinite}});
   }

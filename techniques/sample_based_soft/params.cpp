@@ -41,7 +41,8 @@ const ParamTable<Params>& param_table() {
         "cull_supporting_planes", &P::cull_supporting_planes,
         {"", "", "Leave out triangles whose plane has the light and a group of view samples on one side."});
     t.choice("triangle_order", &P::triangle_order, {"morton", "kd"},
-             {"", "", "What makes triangles of a block neighbours: a Morton curve, or median cuts."});
+             {"", "",
+              "What makes triangles of a block neighbours: a Morton curve, or cuts that keep boxes small."});
     t.number(
         "transparency", &P::transparency, 0, 1,
         {"", "",

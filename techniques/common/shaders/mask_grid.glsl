@@ -33,9 +33,9 @@ float pad;
 
 // Blocked from the start: no part in counts where ABOVE_HORIZON.
 uint below_horizon[WORDS];
-uint counted(uint bits, int word) {
+uint counted(uint bits, uint word) {
   if (ABOVE_HORIZON)
-    [[unroll]] for (int q = 0; q < WORDS; q++) bits &= q == word ? ~below_horizon[q] : 0xffffffffu;
+    [[unroll]] for (int q = 0; q < WORDS; q++) bits &= uint(q) == word ? ~below_horizon[q] : 0xffffffffu;
   return uint(bitCount(bits));
 }
 
@@ -58,16 +58,20 @@ void block_horizon(vec3 P, vec3 n, FrameConstants f) {
   bool behind = dot(f.light.row_z.xyz, P - f.light.origin.xyz) <= 0.0;
   float h = dot(n, f.first.xyz - P), hx = dot(n, f.step_u.xyz), hy = dot(n, f.step_v.xyz);
   if (MOVE != 0u) h += hx * shift.x + hy * shift.y;
-  float inverse = -1.0 / (hx == 0.0 ? 1.0 : hx);
+  // hx > 0: blocked up to column x; hx < 0: from column x on; else the whole row or nothing.
+  bool from_x = hx < 0.0, flat_ = hx == 0.0;
+  float inverse = -1.0 / (flat_ ? 1.0 : hx), direction = from_x ? -1.0 : 1.0, past = from_x ? float(PITCH) : 1.0;
+  uint flip = from_x ? 0xffffffffu : 0u;
   [[unroll]] for (int q = 0; q < WORDS; q++) {
     uint w = 0u;
     [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
       int row = PITCH > 32 ? q >> 1 : q * ROWS_PER_WORD + r;
-      float v = h + hy * float(row), x = clamp(v * inverse, -2.0, float(PITCH) + 1.0);
-      // hx > 0: blocked up to x; hx < 0: blocked from x on; else the whole row or nothing.
-      float lo = hx < 0.0 ? x : 0.0, hi = hx > 0.0 ? x : float(PITCH - 1);
-      hi = hx == 0.0 && v > 0.0 ? -1.0 : hi;
-      uint bits = span(clamp(lo, 0.0, float(PITCH)), clamp(hi, -1.0, float(PITCH - 1)), q & 1);
+      float v = h + hy * float(row), x = v * inverse;
+      x = flat_ ? (v > 0.0 ? -2.0 : float(PITCH)) : x;
+      // Truncation as in span(): columns up to x, or from x on.
+      int n = int(lower(upper(x * direction + past, 0.0), float(PITCH)));
+      n = from_x ? PITCH - n : n;
+      uint bits = below(PITCH > 32 ? clamp(n - 32 * (q & 1), 0, 32) : n) ^ flip;
       uint owned = row < ROWS ? span(0.0, float(COLUMNS - 1), q & 1) : 0u;
       bits |= ~owned;
       w |= PITCH >= 32 ? bits : (bits & below(PITCH)) << (r * PITCH);
@@ -82,46 +86,42 @@ void begin_mask() {
 }
 
 void update_open() {
-  uint columns = 0u, columns_high = 0u;
-  float r0 = 1e3, r1 = -1.0;
+  uint columns = 0u, columns_high = 0u, rows = 0u, rows_high = 0u;
   [[unroll]] for (int b = 0; b < OPEN_BANDS; b++) open_[b] = 0u;
   [[unroll]] for (int q = 0; q < WORDS; q++) {
     uint u = or_of_all(~mask[q]);
-    if (PITCH > 32) {
-      columns |= (q & 1) == 0 ? u : 0u;
-      columns_high |= (q & 1) == 1 ? u : 0u;
-      r0 = lower(r0, u != 0u ? float(q >> 1) : 1e3);
-      r1 = u != 0u ? float(q >> 1) : r1;
-    } else {
-      [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
-        uint row = PITCH == 32 ? u : (u >> (r * PITCH)) & below(PITCH);
-        open_[q / WORDS_PER_OPEN_BAND] |= row;
-        columns |= row;
-        float at = float(q * ROWS_PER_WORD + r);
-        r0 = lower(r0, row != 0u ? at : 1e3);
-        r1 = row != 0u ? at : r1;
-      }
+    [[unroll]] for (int r = 0; r < ROWS_PER_WORD; r++) {
+      int at = PITCH > 32 ? q >> 1 : q * ROWS_PER_WORD + r;
+      uint row = PITCH >= 32 ? u : (u >> (r * PITCH)) & below(PITCH);
+      if (PITCH <= 32) open_[q / WORDS_PER_OPEN_BAND] |= row;
+      bool high = PITCH > 32 && (q & 1) == 1;
+      columns |= high ? 0u : row;
+      columns_high |= high ? row : 0u;
+      rows |= row != 0u && at < 32 ? 1u << (at & 31) : 0u;
+      rows_high |= row != 0u && at >= 32 ? 1u << (at & 31) : 0u;
     }
   }
   int c0 = columns != 0u ? findLSB(columns) : 32 + findLSB(columns_high);
   int c1 = columns_high != 0u ? 32 + findMSB(columns_high) : findMSB(columns);
-  open_rect = vec4(float(c0), float(c1), r0, r1);
+  int r0 = rows != 0u ? findLSB(rows) : 32 + findLSB(rows_high);
+  int r1 = rows_high != 0u ? 32 + findMSB(rows_high) : findMSB(rows);
+  open_rect = vec4(float(c0), float(c1), float(r0), float(r1));
 }
 
 // False where no view sample of the group sees a light sample of the rectangle any more.
 bool is_open(int i0, int i1, int j0, int j1) {
   if (PITCH > 32) return true;
   const int rows = WORDS_PER_OPEN_BAND * ROWS_PER_WORD;
-  int b0 = j0 / rows, b1 = j1 / rows;
   uint found = 0u;
   [[unroll]] for (int b = 0; b < OPEN_BANDS; b++) {
-    bool inside = b >= b0, before_end = b <= b1;
-    found |= inside && before_end ? open_[b] : 0u;
+    bool after = j0 < (b + 1) * rows, before_ = j1 >= b * rows;   // no branches
+    found |= after && before_ ? open_[b] : 0u;
   }
   return (found & below(i1 + 1) & ~below(i0)) != 0u;
 }
 
-// Rectangle of light samples that a box can hide from any view sample of the group, packed; false: none.
+// Rectangle of light samples that a box can hide from any view sample of the group, packed; false: none, and `rect` is
+// nothing.
 //
 // A point q hides from p the light plane's point q s + p (1 - s), s = p.z / (p.z - q.z) >= 1 for q above the plane of
 // the light; per axis it is extreme at the ends of s. Padded before the magnification by s. What reaches down to the
@@ -140,24 +140,49 @@ bool touches(vec3 lo, vec3 hi, out uint rect) {
   float i1 = floor(lower(upper(nearer_hi.x, further_hi.x) + slack, open_rect.y));
   float j0 = ceil(upper(lower(nearer_lo.y, further_lo.y) - slack, open_rect.z));
   float j1 = floor(lower(upper(nearer_hi.y, further_hi.y) + slack, open_rect.w));
-  int a = int(clamp(i0, 0.0, float(COLUMNS - 1))), b = int(clamp(i1, 0.0, float(COLUMNS - 1)));
-  int c = int(clamp(j0, 0.0, float(ROWS - 1))), d = int(clamp(j1, 0.0, float(ROWS - 1)));
+  // Within the mask where there is something; else anything.
+  int a = int(i0), b = int(i1), c = int(j0), d = int(j1);
   rect = uint(a) | uint(b) << 8 | uint(c) << 16 | uint(d) << 24;
   bool open_left = is_open(a, b, c, d), columns_left = i0 <= i1, rows_left = j0 <= j1;   // no branches
   return above && columns_left && rows_left && open_left;
 }
 
-// False when the triangle's plane has the light and all view samples of the group on one side, so that it can hide
-// nothing: a quick end for the ground's large triangles, which reach through the light's plane.
-bool separates(vec3 a, vec3 b, vec3 c) {
-  vec3 n = edge_normal(b - a, c - a);
-  vec3 lo = n * (group_lo - a - pad), hi = n * (group_hi - a + pad);
-  float below_ = dot(lower(lo, hi), vec3(1.0)), above = dot(upper(lo, hi), vec3(1.0));
-  vec3 wider = vec3(reach_of_shift(), reach_of_shift(), 0.0);
-  vec3 l0 = n * (-wider - a - pad), l1 = n * (vec3(float(COLUMNS - 1), float(ROWS - 1), 0.0) + wider - a + pad);
-  float light_below = dot(lower(l0, l1), vec3(1.0)), light_above = dot(upper(l0, l1), vec3(1.0));
-  float error = 1e-5 * (abs(below_) + abs(above) + abs(light_below) + abs(light_above));
-  return !((below_ > error && light_below > error) || (above < -error && light_above < -error));
+// What an edge (a, b) has on its sides: x, y are the least and the largest det(a - P, b - P, L - P) over all view samples
+// P = group's middle + p', |p'| <= g, and light samples L = l + (u, v, 0), |(u, v)| <= h. It is linear in P and in L:
+//   L . a x b - p' . (a - L) x (b - L), with a term of both. a, b, l from the group's middle; al, bl from l.
+vec2 sides_of_edge(vec3 a, vec3 b, vec3 al, vec3 bl, vec3 l, vec2 h, vec3 g, vec3 both, float error) {
+  vec3 n = cross(a, b), m = cross(al, bl), e = b - a;
+  float middle = dot(l, n);
+  float reach = h.x * abs(n.x) + h.y * abs(n.y) + dot(g, abs(m)) + dot(both, abs(e)) + error;
+  return vec2(middle - reach, middle + reach);
+}
+
+// False when the triangle can hide no light sample of `rect` from any view sample of the group: its plane has all of
+// them on one side, or no line between them passes between its edges. Lanes are triangles: what this leaves out need
+// not be asked of each view sample. `error` is far above the rounding of bounds_of(), so that nothing on an edge is lost.
+bool may_hide(vec3 a, vec3 b, vec3 c, uint rect) {
+  vec2 lo = vec2(float(rect & 255u), float((rect >> 16) & 255u)), hi = vec2(float((rect >> 8) & 255u), float(rect >> 24));
+  vec3 middle = 0.5 * (group_lo + group_hi), g = 0.5 * (group_hi - group_lo) + pad;
+  vec2 h = 0.5 * (hi - lo) + reach_of_shift();
+  vec3 at = vec3(0.5 * (lo + hi), 0.0), l = at - middle;
+  vec3 al = a - at, bl = b - at, cl = c - at;
+  a -= middle;
+  b -= middle;
+  c -= middle;
+  vec3 both = vec3(g.z * h.y, g.z * h.x, g.x * h.y + g.y * h.x);
+  vec3 size = abs(a) + abs(b) + abs(c), size_l = abs(l) + vec3(h, 0.0);
+  float length_ = size.x + size.y + size.z, error = 4e-7 * length_ * length_ * (size_l.x + size_l.y + size_l.z);
+  vec2 ab = sides_of_edge(a, b, al, bl, l, h, g, both, error);
+  vec2 bc = sides_of_edge(b, c, bl, cl, l, h, g, both, error);
+  vec2 ca = sides_of_edge(c, a, cl, al, l, h, g, both, error);
+  bool some_below = lower(lower(ab.y, bc.y), ca.y) < 0.0, some_above = upper(upper(ab.x, bc.x), ca.x) > 0.0;
+  vec3 n = cross(b - a, c - a);
+  float of_group = -dot(n, a), of_light = -dot(n, al), slack = 4e-7 * length_ * length_ * length_;
+  float group_reach = dot(g, abs(n)) + slack, light_reach = h.x * abs(n.x) + h.y * abs(n.y) + slack;
+  bool below_ = of_group < -group_reach && of_light < -light_reach;
+  bool above = of_group > group_reach && of_light > light_reach;
+  bool passes = !some_below || !some_above;
+  return passes && !below_ && !above;
 }
 
 // Of a triangle's half-spaces on the columns of row j: column >= lo_slope j + lo_offset, <= hi_slope j + hi_offset. The
@@ -208,68 +233,87 @@ Bounds bounds_of(vec3 a, vec3 b, vec3 c, bool crossing) {
   return e;
 }
 
-// False when no row of `rect` has a column that keeps to the bounds: they are monotone in j, so the ends of the range of
-// rows tell, by the same roundings as span().
-bool may_cover(Bounds e, uint rect) {
-  float j0 = float((rect >> 16) & 255u), j1 = float(rect >> 24);
-  float x0 = upper(lower(e.lo_slope * j0 + e.lo_offset, e.lo_slope * j1 + e.lo_offset));
-  float x1 = lower(upper(e.hi_slope * j0 + e.hi_offset, e.hi_slope * j1 + e.hi_offset));
-  x0 = lower(upper(x0, float(rect & 255u)), float(PITCH));
-  x1 = upper(lower(x1, float((rect >> 8) & 255u)), -1.0);
-  return int(x1 + 1.0) + int(float(PITCH) - x0) > PITCH;
+// The rows of a rectangle, and what it keeps of words that share rows outside it. Unsigned: a division is a shift.
+struct Rows {
+  float c0, c1;
+  uint j0, j1, first_word, last_word, before, after;
+};
+
+Rows rows_of(uint rect) {
+  const uint in_word = uint(ROWS_PER_WORD);
+  Rows r;
+  r.c0 = float(rect & 255u);
+  r.c1 = float((rect >> 8) & 255u);
+  r.j0 = (rect >> 16) & 255u;
+  r.j1 = rect >> 24;
+  r.first_word = r.j0 / in_word;
+  r.last_word = r.j1 / in_word;
+  r.before = 0xffffffffu << ((r.j0 % in_word) * uint(PITCH));
+  r.after = 0xffffffffu >> ((in_word - 1u - r.j1 % in_word) * uint(PITCH));
+  return r;
 }
 
-// Sets in each view sample's mask the light samples of `rect` within the bounds; `some`: there may be any.
-// Returns the number of light samples found (whether or not hidden before) where `counting`, else 0.
-uint fill_rows(Bounds e, uint rect, bool some, bool crossing, bool counting) {
-  float c0 = float(rect & 255u), c1 = float((rect >> 8) & 255u);
-  int j0 = int((rect >> 16) & 255u), j1 = int(rect >> 24);
-  // Rows outside [j0, j1] that share a word with rows inside.
-  int first_word = j0 / ROWS_PER_WORD, last_word = j1 / ROWS_PER_WORD;
-  uint before = (0xffffffffu << ((j0 - first_word * ROWS_PER_WORD) * PITCH)), after = 0xffffffffu >> ((ROWS_PER_WORD - 1 - (j1 - last_word * ROWS_PER_WORD)) * PITCH);
-  int band = j0 / BAND_ROWS, last = some ? j1 / BAND_ROWS : band;
-  uint found = 0u;
-  turns += uint(last - band + 1);
+// Columns of row j within the bounds: their bits in word `part` of the row are span(x, y, part).
+vec2 columns_of(Bounds e, Rows r, float j, bool crossing) {
+  float x0 = upper(e.lo_slope * j + e.lo_offset), x1 = lower(e.hi_slope * j + e.hi_offset);
+  if (crossing) {
+    x0 = upper(x0, e.lo4_slope * j + e.lo4_offset);
+    x1 = lower(x1, e.hi4_slope * j + e.hi4_offset);
+  }
+  return vec2(lower(upper(x0, r.c0), float(PITCH)), upper(lower(x1, r.c1), -1.0));
+}
+
+// Of the bits in a word those in rows of the rectangle.
+uint within(Rows r, uint bits, uint word) {
+  if (ROWS_PER_WORD > 1) {
+    if (BAND_WORDS > 1) bits = word < r.first_word || word > r.last_word ? 0u : bits;
+    bits &= word == r.first_word ? r.before : 0xffffffffu;
+    return bits & (word == r.last_word ? r.after : 0xffffffffu);
+  }
+  uint row = PITCH > 32 ? word / 2u : word;
+  return row < r.j0 || row > r.j1 ? 0u : bits;
+}
+
+// Sets in each view sample's mask the light samples of two triangles' rectangles within their bounds. Two at a time, since
+// what one triangle takes depends on itself from end to end, and a processor that waits for it does the other meanwhile.
+// Returns the numbers of light samples found (whether or not hidden before) where `counting`, else 0.
+uvec2 fill_rows(Bounds e, Bounds f, uint rect_e, uint rect_f, bool crossing, bool counting) {
+  Rows r = rows_of(rect_e), s = rows_of(rect_f);
+  uint band = min(r.j0, s.j0) / uint(BAND_ROWS), last = max(r.j1, s.j1) / uint(BAND_ROWS);
+  uvec2 found = uvec2(0u);
+  turns += last - band + 1u;
   do {
-    uint w[BAND_WORDS];
-    float top = float(band * BAND_ROWS);
-    [[unroll]] for (int k = 0; k < BAND_WORDS; k++) w[k] = 0u;
-    [[unroll]] for (int r = 0; r < BAND_ROWS; r++) {
-      float j = top + float(r);
-      float x0 = upper(e.lo_slope * j + e.lo_offset), x1 = lower(e.hi_slope * j + e.hi_offset);
-      if (crossing) {
-        x0 = upper(x0, e.lo4_slope * j + e.lo4_offset);
-        x1 = lower(x1, e.hi4_slope * j + e.hi4_offset);
-      }
-      x0 = lower(upper(x0, c0), float(PITCH));
-      x1 = upper(lower(x1, c1), -1.0);
+    uint w[BAND_WORDS], x[BAND_WORDS];
+    float top = float(band * uint(BAND_ROWS));
+    [[unroll]] for (int k = 0; k < BAND_WORDS; k++) w[k] = x[k] = 0u;
+    [[unroll]] for (int k = 0; k < BAND_ROWS; k++) {
+      vec2 ce = columns_of(e, r, top + float(k), crossing), cf = columns_of(f, s, top + float(k), crossing);
       if (PITCH > 32) {
-        w[2 * r] = span(x0, x1, 0);
-        w[2 * r + 1] = span(x0, x1, 1);
+        w[2 * k] = span(ce.x, ce.y, 0);
+        w[2 * k + 1] = span(ce.x, ce.y, 1);
+        x[2 * k] = span(cf.x, cf.y, 0);
+        x[2 * k + 1] = span(cf.x, cf.y, 1);
       } else {
-        w[r / ROWS_PER_WORD] |= span(x0, x1, 0) << ((r % ROWS_PER_WORD) * PITCH);
+        w[k / ROWS_PER_WORD] |= span(ce.x, ce.y, 0) << ((k % ROWS_PER_WORD) * PITCH);
+        x[k / ROWS_PER_WORD] |= span(cf.x, cf.y, 0) << ((k % ROWS_PER_WORD) * PITCH);
       }
     }
     [[unroll]] for (int k = 0; k < BAND_WORDS; k++) {
-      if (ROWS_PER_WORD > 1) {
-        int word = band * BAND_WORDS + k;
-        if (BAND_WORDS > 1) w[k] = word < first_word || word > last_word ? 0u : w[k];
-        w[k] &= word == first_word ? before : 0xffffffffu;
-        w[k] &= word == last_word ? after : 0xffffffffu;
-      } else {
-        int row = PITCH > 32 ? band * BAND_ROWS + k / 2 : band * BAND_ROWS + k;
-        w[k] = row < j0 || row > j1 ? 0u : w[k];
-      }
-      if (counting) found += counted(w[k], band * BAND_WORDS + k);
+      uint word = band * uint(BAND_WORDS) + uint(k);
+      w[k] = within(r, w[k], word);
+      x[k] = within(s, x[k], word);
+      if (counting) found += uvec2(counted(w[k], word), counted(x[k], word));
+      w[k] |= x[k];
     }
     // Constant places and a comparison, not mask[band]: a place that varies costs a scalar load and store per lane.
-    [[unroll]] for (int q = 0; q < WORDS; q++) mask[q] |= band == q / BAND_WORDS ? w[q % BAND_WORDS] : 0u;
+    [[unroll]] for (int q = 0; q < WORDS; q++) mask[q] = band == uint(q / BAND_WORDS) ? mask[q] | w[q % BAND_WORDS] : mask[q];
     band++;
   } while (band <= last);
   return found;
 }
 
-// Both in one, for triangles that are seldom missed.
+// Of one triangle, all in one.
 uint rasterise(vec3 a, vec3 b, vec3 c, uint rect, bool crossing, bool counting) {
-  return fill_rows(bounds_of(a, b, c, crossing), rect, true, crossing, counting);
+  Bounds e = bounds_of(a, b, c, crossing);
+  return fill_rows(e, e, rect, rect, crossing, counting).x;
 }

@@ -40,9 +40,9 @@ struct WalkTreeConstants {
   PENUMBRA_UINT list_begin, list_end;  // part of the list for this dispatch
   PENUMBRA_UINT read_list;             // which of the two resume lists is read; the other is written
   PENUMBRA_UINT capacity;              // at least `groups`
-  PENUMBRA_UINT split_turns;           // loop turns after which a group goes on as two
+  PENUMBRA_UINT split_turns;           // loop turns after which a group goes on in another dispatch
   PENUMBRA_UINT groups_each;           // groups that a workgroup does one after the other; 1 for what goes on
-  PENUMBRA_UINT padding;
+  PENUMBRA_UINT parts;                 // 2: each entry of the resume list goes on as two
 };
 
 struct WalkCellsConstants {

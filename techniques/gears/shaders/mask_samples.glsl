@@ -40,7 +40,7 @@ void block_horizon(vec3 P, vec3 n, FrameConstants f) {
   }
 }
 
-bool separates(vec3 a, vec3 b, vec3 c) { return true; }
+bool may_hide(vec3 a, vec3 b, vec3 c, uint rect) { return true; }
 void begin_mask() {}
 void update_open() {}
 
@@ -61,9 +61,7 @@ Bounds bounds_of(vec3 a, vec3 b, vec3 c, bool crossing) {
   return Bounds(e.ab * s, e.bc * s, e.ca * s, e.plane * s, abs(volume));
 }
 
-bool may_cover(Bounds e, uint rect) { return true; }
-
-uint fill_rows(Bounds e, uint rect, bool some, bool crossing, bool counting) {
+uint fill_samples(Bounds e, bool counting) {
   uint found = 0u;
   int q = 0;
   do {
@@ -88,4 +86,8 @@ uint fill_rows(Bounds e, uint rect, bool some, bool crossing, bool counting) {
     turns++;
   } while (q < WORDS);
   return found;
+}
+
+uvec2 fill_rows(Bounds e, Bounds f, uint rect_e, uint rect_f, bool crossing, bool counting) {
+  return uvec2(fill_samples(e, counting), fill_samples(f, counting));
 }

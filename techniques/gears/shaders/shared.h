@@ -42,8 +42,7 @@ struct Header {
   PENUMBRA_UINT resume_count;  // groups, or parts of them, that have to go on in another dispatch
   PENUMBRA_UINT large_count;   // triangles that touch many cells
   PENUMBRA_UINT farthest;      // float bits: largest z of a view sample before the grid camera
-  PENUMBRA_UINT split_count;   // groups that went on as two
-  PENUMBRA_UINT padding[2];
+  PENUMBRA_UINT padding[3];
   // Statistics, low and high words: nodes and leaves visited, pairs (triangle, view sample) rasterised, pairs
   // whose triangle covers at least one light sample.
   PENUMBRA_UINT nodes[2], leaves[2], pairs[2], necessary[2];

@@ -13,6 +13,7 @@ layout(constant_id = 9) const uint COUNTING = 0;         // 1: statistics of thi
 layout(constant_id = 10) const bool BEGIN = true;        // this dispatch begins the masks,
 layout(constant_id = 11) const bool LIST = true;         // does a part of the list,
 layout(constant_id = 13) const uint SAMPLES_SEEN = 0;    // not 0: visibility is written too, from so many light samples
+layout(constant_id = 15) const bool PAIRED = true;       // rasterises two triangles at a time
 layout(constant_id = 12) const bool WALK = true;         // walks the tree or the cells
 #include "techniques/common/shaders/subgroup.glsl"
 #include "techniques/common/shaders/texels.glsl"
@@ -36,15 +37,39 @@ uint pairs = 0u, necessary = 0u, nodes = 0u, leaves = 0u;
 
 uint pixel;
 bool idle;
+vec3 position, normal;   // P and Ng of the pixel
+
+// What a group needs of its view samples. Fetched while the group before it is done, all of it together, since what was
+// not used for long comes slowly.
+struct Fetched {
+  uint pixel;
+  bool idle;
+  vec3 origin, position, normal;
+  uint touched;   // a word of the mask's place: it is near when the mask is stored
+};
 
 // `lanes`: a bit for each view sample of the group that takes part; those without one stand in for the first.
-void begin_group(uint g, uint lanes, FrameConstants f, Uints slots, Vec4s samples) {
-  pixel = slots.at[g * SG + gl_SubgroupInvocationID];
-  idle = pixel == no_sample || (lanes >> gl_SubgroupInvocationID & 1u) == 0u;
+Fetched fetch_group(uint g, uint lanes, Uints slots, Uints masks) {
+  Fetched s;
+  s.pixel = slots.at[g * SG + gl_SubgroupInvocationID];
+  s.idle = s.pixel == no_sample || (lanes >> gl_SubgroupInvocationID & 1u) == 0u;
   // The first slots of a group hold samples. Shuffled by all lanes: in a branch, lane `first` would not take part.
-  uint of_first = subgroupShuffle(pixel, uint(findLSB(lanes)));
-  pixel = idle ? of_first : pixel;
-  p = to_working(f.light, texel(origin_texels, pixel).xyz);
+  uint of_first = subgroupShuffle(s.pixel, uint(max(findLSB(lanes), 0)));
+  s.pixel = s.idle ? of_first : s.pixel;
+  s.origin = texel(origin_texels, s.pixel).xyz;
+  s.position = texel(position_texels, s.pixel).xyz;
+  s.normal = texel(normal_texels, s.pixel).xyz;
+  s.touched = masks.at[s.pixel * uint(WORDS)];
+  return s;
+}
+
+void begin_group(Fetched s, FrameConstants f, Vec4s samples) {
+  pixel = s.pixel;
+  idle = s.idle;
+  turns += s.touched == 0x5bd1e995u ? 1u : 0u;   // used, so that it is fetched
+  position = s.position;
+  normal = s.normal;
+  p = to_working(f.light, s.origin);
   pad = f.pad;
 #ifdef GRID
   p.z = upper(p.z, pad);
@@ -84,36 +109,59 @@ bool all_blocked() {
   return COUNTING != 2u && or_of_all(~w) == 0u;
 }
 
-// Lanes are triangles: the one in `slot` of each lane with `wanted`. Then all that touch the mask are rasterised, lanes
-// being view samples. `listed`: from the list, so possibly through the light's plane.
-void rasterise_slots(uint slot, bool wanted, bool listed) {
-  vec4 a = texel(triangles, slot * 3u);
-  vec3 b = texel(triangles, slot * 3u + 1u).xyz, c = texel(triangles, slot * 3u + 2u).xyz;
+// A triangle in each lane, and the light samples that it may hide.
+struct Triangles {
+  vec3 a, b, c;
   uint rect;
-  bool touched = touches(lower(lower(a.xyz, b), c), upper(upper(a.xyz, b), c), rect);
-  bool apart = listed ? separates(a.xyz, b, c) : a.w == 0.0;
-  bool hit = touched && wanted && apart;
-  uint left = ballot(hit);
-  if (left == 0u) return;
+};
+
+// Lanes are triangles: the one in `slot` of each lane with `wanted`. Returns a bit for each that may hide a light sample
+// from a view sample of the group. `listed`: from the list, so possibly through the light's plane.
+uint find(uint slot, bool wanted, bool listed, out Triangles t) {
+  vec4 a = texel(triangles, slot * 3u);
+  t.a = a.xyz;
+  t.b = texel(triangles, slot * 3u + 1u).xyz;
+  t.c = texel(triangles, slot * 3u + 2u).xyz;
+  bool touched = touches(lower(lower(t.a, t.b), t.c), upper(upper(t.a, t.b), t.c), t.rect);
+  bool may = COUNTING == 2u || may_hide(t.a, t.b, t.c, t.rect);
+  bool here = listed || a.w == 0.0;
+  return ballot(touched && wanted && may && here);
+}
+
+// The triangle of lane l, seen from this view sample.
+Bounds bounds_of_lane(Triangles t, uint l, bool listed) {
+  vec3 a = vec3(subgroupShuffle(t.a.x, l), subgroupShuffle(t.a.y, l), subgroupShuffle(t.a.z, l)) - p;
+  vec3 b = vec3(subgroupShuffle(t.b.x, l), subgroupShuffle(t.b.y, l), subgroupShuffle(t.b.z, l)) - p;
+  vec3 c = vec3(subgroupShuffle(t.c.x, l), subgroupShuffle(t.c.y, l), subgroupShuffle(t.c.z, l)) - p;
+  return bounds_of(a, b, c, listed);
+}
+
+// Lanes are view samples: rasterises the triangles of the lanes in `left`; where PAIRED two at a time, an odd one twice.
+void rasterise_found(Triangles t, uint left, bool listed) {
   do {
-    Bounds e;
-    uint its_rect;
-    bool some;
-    do {   // to the next triangle that may cover a light sample of any view sample
-      uint l = uint(findLSB(left));
+    uint l = uint(findLSB(left)), m = l;
+    left &= left - 1u;
+    bool two = PAIRED && !listed && left != 0u;
+    if (PAIRED && !listed) {
+      m = two ? uint(findLSB(left)) : l;
       left &= left - 1u;
-      vec3 A = vec3(subgroupShuffle(a.x, l), subgroupShuffle(a.y, l), subgroupShuffle(a.z, l)) - p;
-      vec3 B = vec3(subgroupShuffle(b.x, l), subgroupShuffle(b.y, l), subgroupShuffle(b.z, l)) - p;
-      vec3 C = vec3(subgroupShuffle(c.x, l), subgroupShuffle(c.y, l), subgroupShuffle(c.z, l)) - p;
-      its_rect = subgroupShuffle(rect, l);
-      e = bounds_of(A, B, C, listed);
-      some = or_of_all(may_cover(e, its_rect) ? 1u : 0u) != 0u;
-      turns++;
-      if (COUNTING != 0u && !idle) pairs++;
-    } while (!some && left != 0u);
-    uint found = fill_rows(e, its_rect, some, listed, COUNTING != 0u);
-    if (COUNTING != 0u && !idle) necessary += found != 0u ? 1u : 0u;
+    }
+    Bounds e = bounds_of_lane(t, l, listed), f = e;
+    if (PAIRED && !listed) f = bounds_of_lane(t, m, listed);
+    uvec2 found = fill_rows(e, f, subgroupShuffle(t.rect, l), subgroupShuffle(t.rect, m), listed, COUNTING != 0u);
+    turns++;
+    if (COUNTING != 0u && !idle) {
+      pairs += two ? 2u : 1u;
+      necessary += found.x != 0u ? 1u : 0u;
+      necessary += found.y != 0u && two ? 1u : 0u;
+    }
   } while (left != 0u);
+}
+
+void rasterise_slots(uint slot, bool wanted, bool listed) {
+  Triangles t;
+  uint left = find(slot, wanted, listed, t);
+  if (left != 0u) rasterise_found(t, left, listed);
 }
 
 void do_list(Uints list, uint begin, uint end) {

@@ -30,9 +30,9 @@ void main() {
   if (n >= pc.work_groups) return;
   uint g = RESUMED ? pc.resume.at[pc.read_list * pc.groups + n] : pc.first_group + n;
   FrameConstants f = frame;
-  begin_group(g, every_lane, f, pc.slots, pc.light_samples);
+  begin_group(fetch_group(g, every_lane, pc.slots, pc.masks), f, pc.light_samples);
   if (BEGIN)
-    block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
+    block_horizon(position, normal, f);
   else
     load_mask(pc.masks);
   if (LIST) do_list(pc.list, pc.list_begin, pc.list_end);

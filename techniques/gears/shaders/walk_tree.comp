@@ -14,10 +14,10 @@ layout(push_constant) uniform Push { WalkTreeConstants pc; };
 const uint DEPTH = 12u;
 
 // Groups that cost much are neighbours; a device that deals its threads contiguous work would leave them all to one.
-// So take chunks of 16 groups from 64 places in turn.
+// So take chunks of 16 groups from 64 places in turn, the first of them one chunk longer where it does not come out even.
 uint interleaved(uint n) {
-  uint columns = ((pc.groups + 15u) / 16u + 63u) / 64u, chunk = n / 16u;
-  return ((chunk % 64u) * columns + chunk / 64u) * 16u + n % 16u;
+  uint chunks = (pc.groups + 15u) / 16u, chunk = n / 16u, place = chunk % 64u;
+  return (place * (chunks / 64u) + min(place, chunks % 64u) + chunk / 64u) * 16u + n % 16u;
 }
 
 uint first_leaf_below(uint node) {
@@ -29,17 +29,23 @@ uint last_leaf_below(uint node) {
   return node - pc.first_leaf;
 }
 
+// A stack and a queue of nodes whose children are to be visited: the first child, and a bit for each of them. They lie in
+// the lanes, entry k in lane k % SG: an array at a place that varies would be written lane by lane.
+const uint STACK_PARTS = (DEPTH + SG - 1u) / SG;
+
 // Walks on from leaf `start` until `limit` loop turns; returns where to go on, or 0xffffffff when done.
 uint walk(uint start, uint limit) {
-  uint first_child[DEPTH], pending[DEPTH];              // per level: a bit for each child to visit
-  uint leaf_first[LEAF_BATCH + 1u], leaf_mask[LEAF_BATCH + 1u];   // leaves to rasterise: a bit per child
+  uint lane = gl_SubgroupInvocationID;
+  uint stack_first[STACK_PARTS], stack_bits[STACK_PARTS];
+  [[unroll]] for (uint k = 0u; k < STACK_PARTS; k++) stack_first[k] = stack_bits[k] = 0u;
+  uint queue_first = 0u, queue_bits = 0u;   // above the leaves
   uint node = 0u;
   int top = -1;
   bool more = true;
   do {
     uint parents = 0u, found = 0u;
     do {
-      uint first = node * SG + 1u, child = first + gl_SubgroupInvocationID;
+      uint first = node * SG + 1u, child = first + lane;
       bool above_leaves = first >= pc.first_leaf;
       vec4 a = texel(boxes, child * 2u), b = texel(boxes, child * 2u + 1u);
       uint rect;
@@ -49,37 +55,55 @@ uint walk(uint start, uint limit) {
         turns += DEPTH;
       }
       uint m = ballot(hit);
-      leaf_first[parents] = first;
-      leaf_mask[parents] = m;
       bool take = above_leaves && m != 0u, push = !above_leaves && m != 0u;
+      bool mine = take && lane == parents;
+      queue_first = mine ? first : queue_first;
+      queue_bits = mine ? m : queue_bits;
       parents += take ? 1u : 0u;
       found += take ? uint(bitCount(m)) : 0u;
+      // On with the first child of what was found, or of the last on the stack.
       top += push ? 1 : 0;
-      int at = max(top, 0);
-      first_child[at] = push ? first : first_child[at];
-      uint bits = push ? m : pending[at];
       more = top >= 0;
-      node = first_child[at] + uint(findLSB(more ? bits : 1u));
+      uint at = uint(max(top, 0)), its_first = 0u, bits = 0u;
+      [[unroll]] for (uint k = 0u; k < STACK_PARTS; k++) {
+        uint f = subgroupShuffle(stack_first[k], at % SG), s = subgroupShuffle(stack_bits[k], at % SG);
+        its_first = at / SG == k ? f : its_first;
+        bits = at / SG == k ? s : bits;
+      }
+      its_first = push ? first : its_first;
+      bits = push ? m : bits;
+      node = its_first + uint(findLSB(more ? bits : 1u));
       bits &= bits - 1u;
-      pending[at] = bits;
+      [[unroll]] for (uint k = 0u; k < STACK_PARTS; k++) {
+        bool here = lane == at % SG && at / SG == k;
+        stack_first[k] = here ? its_first : stack_first[k];
+        stack_bits[k] = here ? bits : stack_bits[k];
+      }
       top -= more && bits == 0u ? 1 : 0;
       turns++;
       if (COUNTING != 0u) nodes++;
-    } while (more && found < LEAF_BATCH && turns < limit);
+    } while (more && found < LEAF_BATCH && parents < SG && turns < limit);
 
     bool full = false;
     if (found > 0u) {
-      uint i = 0u, left = leaf_mask[0];
+      uint i = 0u, first = subgroupShuffle(queue_first, 0u), bits = subgroupShuffle(queue_bits, 0u);
       do {
-        uint leaf = leaf_first[i] + uint(findLSB(left)) - pc.first_leaf;
-        rasterise_slots(leaf * SG + gl_SubgroupInvocationID, true, false);
-        left &= left - 1u;
-        i += left == 0u ? 1u : 0u;
-        left = left == 0u ? leaf_mask[i] : left;
-        turns++;
-        found--;
+        Triangles t;
+        uint left;
+        do {   // to the next leaf with triangles that may hide something
+          left = find((first + uint(findLSB(bits)) - pc.first_leaf) * SG + lane, true, false, t);
+          bits &= bits - 1u;
+          bool next = bits == 0u;
+          i = next && i + 1u < SG ? i + 1u : i;
+          uint next_first = subgroupShuffle(queue_first, i), next_bits = subgroupShuffle(queue_bits, i);
+          first = next ? next_first : first;
+          bits = next ? next_bits : bits;
+          turns++;
+          found--;
+          if (COUNTING != 0u) leaves++;
+        } while (left == 0u && found > 0u);
+        if (left != 0u) rasterise_found(t, left, false);
         full = all_blocked();
-        if (COUNTING != 0u) leaves++;
       } while (found > 0u && !full);
     }
     more = more && !full;
@@ -103,71 +127,89 @@ uint beyond_gap(uint lanes) {
   return widest > 0.0 ? beyond : 0u;
 }
 
-void go_on(uint at, uint group, uint lanes, uint next) {
-  uint entry = ((1u - pc.read_list) * pc.capacity + at) * 3u;
-  pc.resume.at[entry] = group;
-  pc.resume.at[entry + 1u] = lanes;
-  pc.resume.at[entry + 2u] = next;
-}
+// A group of view samples, or a part of one.
+struct Work {
+  uint group, lanes, start;   // start: leaf to go on at
+};
 
-// Writes down where to go on. A group that costs much has view samples far apart, so that what it walks is wide: it goes
-// on as two, of neighbours each.
-void leave(uint group, uint lanes, uint next) {
-  uint beyond = beyond_gap(lanes);
-  if (gl_SubgroupInvocationID != 0u) return;
-  if (beyond != 0u && pc.groups + atomicAdd(pc.header.h.split_count, 1u) < pc.capacity) {
-    uint at = atomicAdd(pc.header.h.resume_count, 2u);
-    go_on(at, group, lanes & ~beyond, next);
-    go_on(at + 1u, group, beyond, next);
-  } else {
-    go_on(atomicAdd(pc.header.h.resume_count, 1u), group, lanes, next);
+Work work_of(uint n) {
+  Work w = Work(interleaved(n), every_lane, 0u);
+  if (RESUMED) {
+    uint entry = (pc.read_list * pc.capacity + n / pc.parts) * 3u;
+    w = Work(pc.resume.at[entry], pc.resume.at[entry + 1u], pc.resume.at[entry + 2u]);
   }
+  return w;
 }
 
 // One group. `turns` counts on from group to group; one for which too few are left goes on in the next dispatch, but
-// for the `first`.
-void do_group(uint n, bool first, FrameConstants f) {
-  uint g = RESUMED ? n : interleaved(n);
-  uint lanes = every_lane, start = 0u;
-  if (RESUMED) {
-    uint entry = (pc.read_list * pc.capacity + n) * 3u;
-    g = pc.resume.at[entry];
-    lanes = pc.resume.at[entry + 1u];
-    start = pc.resume.at[entry + 2u];
-  }
-  if (!RESUMED && g >= pc.groups) return;
-  begin_group(g, lanes, f, pc.slots, pc.light_samples);
+// for the `first`. Returns the leaf to go on at.
+uint do_group(Work work, bool first, FrameConstants f) {
+  uint next = 0xffffffffu;
   if (BEGIN)
-    block_horizon(texel(position_texels, pixel).xyz, texel(normal_texels, pixel).xyz, f);
+    block_horizon(position, normal, f);
   else
     load_mask(pc.masks);
   if (LIST) do_list(pc.list, pc.list_begin, pc.list_end);
   if (WALK) {
     if (!BEGIN && COUNTING != 2u) update_open();
-    uint next = 0xffffffffu;
-    bool single = (lanes & (lanes - 1u)) == 0u;
+    bool single = (work.lanes & (work.lanes - 1u)) == 0u;
     uint limit = single ? TURN_LIMIT : min(turns + pc.split_turns, TURN_LIMIT);
     bool enough = first || turns + pc.split_turns <= TURN_LIMIT;
     if (!all_blocked()) {
-      next = start;
-      if (enough) next = walk(start, limit);
+      next = work.start;
+      if (enough) next = walk(work.start, limit);
     }
-    if (next != 0xffffffffu) leave(g, lanes, next);
   }
   store_mask(pc.masks);
   store_visibility(pc.visibility);
+  return next;
+}
+
+// Writes down where to go on: each lane of that with something `left`.
+void leave(Work left) {
+  bool mine = left.start != 0xffffffffu;
+  uint lanes = ballot(mine), at = 0u;
+  if (lanes == 0u) return;
+  if (gl_SubgroupInvocationID == 0u) at = atomicAdd(pc.header.h.resume_count, uint(bitCount(lanes)));
+  at = subgroupShuffle(at, 0u) + uint(bitCount(lanes & ((1u << gl_SubgroupInvocationID) - 1u)));
+  uint entry = ((1u - pc.read_list) * pc.capacity + at) * 3u;
+  if (mine) {
+    pc.resume.at[entry] = left.group;
+    pc.resume.at[entry + 1u] = left.lanes;
+    pc.resume.at[entry + 2u] = left.start;
+  }
 }
 
 void main() {
   uint n = linear_group() * pc.groups_each, end = min(n + pc.groups_each, pc.work_groups);
   if (n >= end) return;
   FrameConstants f = frame;
-  bool first = true;
-  do {   // a workgroup costs more to launch than a turn
-    do_group(n, first, f);
-    first = false;
+  Work left = Work(0u, 0u, 0xffffffffu), next = work_of(n);
+  Fetched fetched = fetch_group(min(next.group, pc.groups - 1u), next.lanes, pc.slots, pc.masks);
+  for (uint k = 0u; k < min(SG, pc.groups_each); k++) {   // a workgroup costs more to launch than a turn
+    Work work = next;
+    begin_group(fetched, f, pc.light_samples);
+    bool some = n < end && (RESUMED || work.group < pc.groups);
+    if (RESUMED) {
+      // A group that costs much has view samples far apart, so that what it walks is wide: it goes on as two, of
+      // neighbours each.
+      uint beyond = pc.parts == 2u ? beyond_gap(work.lanes) : 0u;
+      work.lanes = n % pc.parts == 0u ? work.lanes & ~beyond : beyond;
+      some = some && work.lanes != 0u;
+      begin_group(fetch_group(work.group, work.lanes, pc.slots, pc.masks), f, pc.light_samples);
+    }
     n++;
+    next = work_of(min(n, end - 1u));
+    fetched = fetch_group(min(next.group, pc.groups - 1u), next.lanes, pc.slots, pc.masks);
+    if (some) {
+      work.start = do_group(work, k == 0u, f);
+      bool mine = gl_SubgroupInvocationID == k;
+      left.group = mine ? work.group : left.group;
+      left.lanes = mine ? work.lanes : left.lanes;
+      left.start = mine ? work.start : left.start;
+    }
     turns++;
-  } while (n < end);
+  }
+  leave(left);
   add_statistics(pc.header);
 }
