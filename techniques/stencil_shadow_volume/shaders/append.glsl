@@ -35,15 +35,25 @@ bool before(uint a, uint b) {
 // The side of a volume whose near cap, seen from the light, runs a -> b counter-clockwise: outwards, so b -> a.
 //
 // Its triangles are slivers: an edge of the mesh, or its image at infinity, and two edges that are as long as the picture.
-// Rasterisers take the slope of depth from the two edges at a triangle's first corner [lavapipe: first two corners exchanged where
-// it turns the other way]; were both long, what is left of their products would be rounding. So the short edge comes first. The
-// diagonal is the same whichever way the side runs: the two sides on an edge that two volumes share are the same triangles with
-// their first two corners exchanged, so that rasterisers find the same fragments and depths in both, and they cancel.
+// Rasterisers take the slope of depth from the two edges at a triangle's first corner; were both long, what is left of their
+// products would be rounding. So the first corner is an end of the short edge.
+//
+// The two sides on an edge that two volumes share must cancel in every pixel: same fragments, same depths. So both have the same
+// diagonal, and each triangle the same first corner whichever way the side runs, with the other two exchanged: a rasteriser turns
+// one of them by exchanging these two again [lavapipe], and a clipper's fans about the first corner are the same triangles.
+void put_turned(uint at, bool turned, uint corner, uint b, uint c) {
+  if (turned)
+    put(LIST_SIDES, at, corner, c, b);
+  else
+    put(LIST_SIDES, at, corner, b, c);
+}
+
 void put_side(uint at, uint a, uint b) {
   const uint n = push.vertex_count;
-  const uint end = before(b, a) ? b : a;   // of the diagonal, on the mesh
-  const uint far = (end == a ? b : a) + n;
-  put(LIST_SIDES, at, b, a, far);
-  if (push.indices_per_quad >= 6) put(LIST_SIDES, at + 3, a + n, b + n, end);
-  if (push.indices_per_quad >= 9) put(LIST_SIDES, at + 6, b + n, a + n, 2 * n);
+  const bool turned = before(b, a);
+  const uint near = turned ? b : a;  // the diagonal goes from here to the other's image at infinity
+  const uint other = turned ? a : b;
+  put_turned(at, turned, near, other + n, other);  // unturned: a, b + n, b, that is b, a, b + n
+  if (push.indices_per_quad >= 6) put_turned(at + 3, turned, other + n, near, near + n);
+  if (push.indices_per_quad >= 9) put_turned(at + 6, turned, other + n, near + n, 2 * n);
 }
