@@ -233,6 +233,27 @@ bool may_hide(vec3 a, vec3 b, vec3 c) {
   return may && beyond >= abs(volume) * 0.9999;
 }
 
+// Whether the view sample itself has the triangle (corners relative to p) between it and the light's bounds. Stricter than
+// touches() and between() for its group: what a table says then hangs neither on the group nor on its order.
+bool own_triangle(vec3 a, vec3 b, vec3 c) {
+  vec3 reach = light_extent - 2.0 * pad, to_lo = light_middle - reach - p, to_hi = light_middle + reach - p;
+  vec3 lo = lower(lower(a, b), c), hi = upper(upper(a, b), c);
+  float t0 = 0.0, t1 = 1.0;
+  [[unroll]] for (int k = 0; k < 3; k++) {
+    float g = to_hi[k], r = lo[k] / (abs(g) < 1e-30 ? 1e-30 : g);
+    t0 = upper(t0, g >= 0.0 ? r : t0);
+    t1 = lower(t1, g < 0.0 ? r : t1);
+    g = to_lo[k];
+    r = hi[k] / (abs(g) < 1e-30 ? 1e-30 : g);
+    t1 = lower(t1, g >= 0.0 ? r : t1);
+    t0 = upper(t0, g < 0.0 ? r : t0);
+  }
+  vec3 n = edge_normal(b - a, c - a);
+  float own = -dot(n, a), light = dot(n, light_middle - p - a), wide = dot(abs(n), reach);
+  bool apart = (own > 0.0 && light > wide) || (own < 0.0 && light < -wide);
+  return t0 <= t1 && !apart;
+}
+
 // Bits of a word that a sample owns.
 uint owned_bits(int word) {
   int left = SAMPLES - 32 * (word + int(first_word));
@@ -272,7 +293,7 @@ uint table_entry(vec3 n, bool inner_is_positive, out uint flip) {
 
 uvec4 table_bits(uint at) { return texelFetch(table, ivec2(at & 8191u, at >> 13u), 0); }
 
-uint look_up(HalfSpaces h, bool counting) {
+uint look_up(HalfSpaces h, bool own, bool counting) {
   uint flip0, flip1, flip2, found = 0u;
   uint e0 = table_entry(h.ab, true, flip0), e1 = table_entry(h.bc, true, flip1), e2 = table_entry(h.ca, true, flip2);
   // Words of an entry come four to a texel; a pass begins at a multiple of four.
@@ -280,6 +301,7 @@ uint look_up(HalfSpaces h, bool counting) {
   [[unroll]] for (uint k = 0u; k < uint(WORDS + 3) / 4u; k++) {
     uint at = min(first + k, uint(TABLE_TEXELS) - 1u);
     uvec4 bits = (table_bits(e0 + at) ^ flip0) & (table_bits(e1 + at) ^ flip1) & (table_bits(e2 + at) ^ flip2);
+    bits = own ? bits : uvec4(0u);
     [[unroll]] for (uint j = 0u; j < 4u; j++) {
       if (4u * k + j >= uint(WORDS)) break;
       mask[4u * k + j] |= bits[j];

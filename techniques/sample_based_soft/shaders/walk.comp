@@ -231,7 +231,7 @@ void rasterise_all(Triangles t, bool listed) {
       h = half_spaces(a, b, c);
       asked = clusters_of(a, b, c);
       if (!skips_nothing()) asked &= ~closed;
-      if (TABLE > 0) asked = may_hide(a, b, c) ? asked : 0u;
+      if (TABLE > 0) asked = may_hide(a, b, c) && (listed || own_triangle(a, b, c)) ? asked : 0u;
       found = 0u;
       if (TABLE == 0 || listed) found = ask_boxes(h, asked, counting);
       some = ballot(asked != 0u);
@@ -239,7 +239,7 @@ void rasterise_all(Triangles t, bool listed) {
       if (some == 0u && t.left != 0u) note(found);
     } while (some == 0u && t.left != 0u);
     if (TABLE > 0 && !listed) {
-      if (some != 0u) found = look_up(h, counting);
+      if (some != 0u) found = look_up(h, asked != 0u, counting);
     } else {
       found += hide_samples(h, asked, counting);
     }
