@@ -4,4 +4,4 @@
 namespace penumbra::testing {
 // Calls of malloc and its like so far (under the sanitizers: of operator new).
 long allocation_count();
-}
+}  // namespace penumbra::testing
