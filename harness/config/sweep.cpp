@@ -141,8 +141,8 @@ std::vector<std::string> known_keys(const Registry& registry) {
 }  // namespace
 
 const std::vector<std::string>& image_names() {
-  static const std::vector<std::string> names{"visibility", "shaded", "error",   "mask",
-                                              "position",   "normal", "triangle"};
+  static const std::vector<std::string> names{"visibility", "shaded", "error",    "mask",
+                                              "position",   "normal", "triangle", "diagnostics"};
   return names;
 }
 

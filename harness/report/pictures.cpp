@@ -115,6 +115,9 @@ class Planner {
     add("reference", Kind::visibility);
     add("shaded", Kind::shaded);
     add("reference_shaded", Kind::shaded);
+    for (const auto& [name, file] : images->items())
+      if (name.starts_with("diagnostic_") && file.is_string() && file.get<std::string>().ends_with(".png"))
+        add(name.c_str(), Kind::shaded);
     add_error(*images, pictures);
     return pictures;
   }

@@ -193,6 +193,8 @@ void BatchRunner::judge(Prepared& prepared) {
   PointRun& run = *prepared.run;
   const Point& point = run.point();
   const ViewSamplesHost& view = view_->samples().host();
+  std::vector<Illustration> illustrations;
+  if (pictures_.wanted("diagnostics")) illustrations = run.illustrations();
   // Each frame of an accumulation is held against its own truth at once: none of their masks need stay.
   Accumulation frames;
   for (int set = 0; set < point.accumulate; ++set) {
@@ -211,6 +213,7 @@ void BatchRunner::judge(Prepared& prepared) {
   heartbeat_.stage("metrics");
   Output& output = run.output();
   frames.take_mean(output);
+  output.illustrations = std::move(illustrations);
   const std::vector<uint8_t>& evaluated = frames.evaluated();
   nlohmann::json& record = prepared.record;
   {
@@ -245,6 +248,9 @@ void BatchRunner::judge(Prepared& prepared) {
   record["images"] = settings_.run_folder.empty()
                          ? nlohmann::json::object()
                          : pictures_.write(run, output, evaluated, shown, view, view_key_);
+  if (!settings_.run_folder.empty() && pictures_.wanted("diagnostics"))
+    record["diagnostics"] =
+        pictures_.write_diagnostics(run, output, evaluated, shown, view, record["images"]);
   run.drop_output();
 }
 

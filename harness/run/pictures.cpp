@@ -7,6 +7,7 @@
 
 #include "image/image.h"
 #include "metrics/error_map.h"
+#include "run/diagnostics.h"
 #include "run/files.h"
 
 namespace penumbra::run {
@@ -103,6 +104,29 @@ void Pictures::reference(nlohmann::json& images, const Truth& truth, const ViewS
   write_once("reference", "visibility.exr", truth.visibility);
   if (!truth.standard_error.empty())
     write_once("reference_standard_error", "standard_error.exr", truth.standard_error);
+}
+
+nlohmann::json Pictures::write_diagnostics(const PointRun& run, const Output& output,
+                                           std::span<const uint8_t> evaluated, const Truth& truth,
+                                           const ViewSamplesHost& view, nlohmann::json& images) const {
+  nlohmann::json legends = nlohmann::json::array();
+  const Frame& frame = run.lit().current;
+  const Backdrop back = backdrop(shade(view, frame, output.visibility, output.cosines), view, frame.camera);
+  const auto add = [&](const Illustration& illustration) {
+    const Drawn drawn = draw(illustration, back);
+    const std::string folder = "images/" + run.point().id, name = "diagnostic_" + illustration.name;
+    images[name] = make(folder, (name + ".png").c_str());
+    write_png(root_ / images[name].get<std::string>(), drawn.picture);
+    if (!drawn.figures.empty()) {
+      images[name + "_exr"] = make(folder, (name + ".exr").c_str());
+      write_exr_gray(root_ / images[name + "_exr"].get<std::string>(), drawn.width, drawn.height,
+                     drawn.figures);
+    }
+    legends.push_back(drawn.legend);
+  };
+  for (const Illustration& illustration : output.illustrations) add(illustration);
+  add(zones(truth.visibility, evaluated));
+  return legends;
 }
 
 nlohmann::json Pictures::write(const PointRun& run, const Output& output, std::span<const uint8_t> evaluated,

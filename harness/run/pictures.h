@@ -26,9 +26,15 @@ class Pictures {
   // view's folder. Returns "images" of the record. Throws WriteError.
   nlohmann::json write(const PointRun& run, const Output& output, std::span<const uint8_t> evaluated,
                        const Truth& truth, const ViewSamplesHost& view, const std::string& view_name) const;
+  // Whether the config asks for `name`.
+  bool wanted(const char* name) const;
+  // Pictures of what the technique shows (output.illustrations) and of the truth's zones, named in `images`;
+  // returns "diagnostics" of the record, their legends. Throws WriteError.
+  nlohmann::json write_diagnostics(const PointRun& run, const Output& output,
+                                   std::span<const uint8_t> evaluated, const Truth& truth,
+                                   const ViewSamplesHost& view, nlohmann::json& images) const;
 
  private:
-  bool wanted(const char* name) const;
   std::string visibility(const std::string& folder, const ViewSamplesHost& view,
                          std::span<const float> v) const;
   void shaded(nlohmann::json& images, const char* name, const std::string& folder,

@@ -146,6 +146,19 @@ void PointRun::rebuild() {
   heartbeat_.limit(0);
 }
 
+std::vector<Illustration> PointRun::illustrations() {
+  auto* illustrated = dynamic_cast<Illustrated*>(technique_.get());
+  if (!illustrated) return {};
+  heartbeat_.stage("diagnostics");
+  heartbeat_.limit(limits_.frame_s + limits_.first_call_s);
+  CostTimer timer(costs_, "images");
+  std::vector<Illustration> shown = illustrated->illustrations();
+  passes_.finish();
+  passes_.take_times();
+  heartbeat_.limit(0);
+  return shown;
+}
+
 FrameTimes PointRun::frame() { return frame_of_set((set_ + 1) % point_.accumulate); }
 
 void PointRun::take_set(int set) {

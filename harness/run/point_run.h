@@ -10,6 +10,7 @@
 #include "gpu/pass_recorder.h"
 #include "run/heartbeat.h"
 #include "run/view.h"
+#include "technique/illustration.h"
 #include "technique/technique.h"
 
 namespace penumbra::run {
@@ -28,6 +29,7 @@ struct Output {
   std::vector<uint8_t> claimed;  // empty: everywhere
   std::vector<float> cosines;    // empty: the harness's
   Counters counters;
+  std::vector<Illustration> illustrations;  // where they are asked for
 };
 
 struct FrameTimes {
@@ -71,6 +73,8 @@ class PointRun {
   // The frame of another set of an accumulation, after prepare(), which took set 0; output() is then its own.
   // Throws PointError.
   void take_set(int set);
+  // What the technique shows of the last frame; empty for techniques that show nothing.
+  std::vector<Illustration> illustrations();
   const LightSamples& light_samples() const { return *case_.light_samples; }
   const PointMemory& memory() const { return memory_; }
   // Keeps a hash of the output's evaluated pixels: of set 0, before another is taken.

@@ -149,6 +149,7 @@ def meet(sizes, values, target):
     if target is None or target <= 0 or (values <= 0).any():
         return None
     y = numpy.log(values / target)
+    y[abs(y) < 1e-6] = 0  # the target may be one of the values, but for rounding
     if y[0] == 0:
         return float(numpy.exp(sizes[0]))
     for i in range(len(y) - 1):

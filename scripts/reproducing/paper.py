@@ -95,6 +95,7 @@ TABLE = Object(
         "title": Text("its name in the source"),
         "caption": Text("what it shows"),
         "config": Text("the sweep, a file beside paper.json"),
+        "filter": Text("only points whose key matches, as --filter of penumbra run; a mode's own filter goes before it"),
         "figure": Text(ITEM_KEYS["figure"].about),
         "scale": ITEM_KEYS["scale"],
         "unit": ITEM_KEYS["unit"],
@@ -139,7 +140,7 @@ TABLE = Object(
         ),
         "pictures": Object(
             {
-                "images": List(Text(), "names of images: shaded, visibility, error; reference/shaded, reference/visibility"),
+                "images": List(Text(), "names of images: shaded, error, reference/shaded, diagnostic_NAME"),
                 "figures": List(Object({"label": Text(), "figure": Text(), "scale": Number()}, ("label", "figure")), "below each picture", 0),
             },
             ("images",),

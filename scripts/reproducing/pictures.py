@@ -8,7 +8,7 @@ from reproducing.cells import figure_of
 from reproducing.paper import shown
 from reproducing.svg import number
 
-NAMES = {"shaded": "", "error": "error (test − reference, full colour at 0.25)", "visibility": "visibility", "reference_shaded": "reference"}
+NAMES = {"shaded": "", "error": "error (test − reference, full colour at 0.25)", "visibility": "visibility", "reference/shaded": "reference"}
 
 
 def inlined(path):
@@ -18,13 +18,13 @@ def inlined(path):
         return None
 
 
-def picture(run, point, image):
-    """The picture's data, or None; results may come from elsewhere, and name no file outside of their run."""
-    name = (point.get("images") or {}).get(image)
+def file_of(run, point, image):
+    """The picture's file, or None; results may come from elsewhere, and name no file outside of their run."""
+    name = (point.get("images") or {}).get(image.replace("/", "_"))
     if not name:
         return None
     path = (run.folder / name).resolve()
-    return inlined(path) if path.suffix == ".png" and path.is_relative_to(run.folder.resolve()) else None
+    return path if path.suffix == ".png" and path.is_relative_to(run.folder.resolve()) else None
 
 
 def caption_of(point, figures):
@@ -36,11 +36,43 @@ def caption_of(point, figures):
     return ", ".join(told)
 
 
-def shot(data, title, small, alt):
+def diagnostic_of(point, image):
+    """The legend of a diagnostic picture, or None."""
+    name = image.removeprefix("diagnostic_")
+    return next((d for d in point.get("diagnostics") or [] if d.get("name") == name), None) if name != image else None
+
+
+def legend_text(legend):
+    if "high" in legend:
+        return f"from none to {number(legend['high'])} (bright; logarithmic), median {number(legend['median'])}"
+    return ""
+
+
+def legend_key(legend):
+    """Named colours: of classes, and of lines."""
+    colours = legend.get("line_colors") or (legend.get("colors", []) if "names" in legend else [])
+    named = zip(legend.get("names", []), colours)
+    return "".join(f'<span class="swatch" style="background:{html.escape(colour)}"></span>{html.escape(name)} ' for name, colour in named)
+
+
+def shot(data, title, small, alt, key=""):
     return (
         f'<figure><img src="{data}" alt="{html.escape(alt)}" loading="lazy"><figcaption>{html.escape(title)}'
-        f"<small>{html.escape(small)}</small></figcaption></figure>"
+        f"<small>{html.escape(small)}</small>{f'<small>{key}</small>' if key else ''}</figcaption></figure>"
     )
+
+
+def strip_of(grid, run, row, series, image):
+    """[(column, point, picture)]; what is the same for several columns stands once."""
+    found, seen = [], set()
+    for column in shown(grid.columns):
+        points = grid.cell(series, row, column).points
+        path = file_of(run, points[0], image) if points else None
+        data = inlined(path) if path and path not in seen else None
+        seen.add(path)
+        if data:
+            found.append((column, points[0], data))
+    return found
 
 
 def shots(grid, run):
@@ -49,17 +81,18 @@ def shots(grid, run):
     for row in grid.rows:
         for series in grid.series:
             for image in wanted["images"]:
-                strip = []
-                for column in shown(grid.columns):
-                    points = grid.cell(series, row, column).points
-                    data = picture(run, points[0], image) if points else None
-                    if data:
-                        caption = caption_of(points[0], wanted.get("figures", []))
-                        strip.append(shot(data, column["label"], caption, f"{row['label']}, {column['label']}, {image}"))
-                    if image.startswith("reference") and strip:
-                        break
+                strip, title = [], NAMES.get(image, image)
+                found = strip_of(grid, run, row, series, image)
+                for column, point, data in found:
+                    legend, caption, key = diagnostic_of(point, image), "", ""
+                    if legend:
+                        title, caption, key = legend["title"], legend_text(legend), legend_key(legend)
+                    elif not image.startswith("reference"):
+                        caption = caption_of(point, wanted.get("figures", []))
+                    label = column["label"] if len(found) > 1 else ""
+                    strip.append(shot(data, label, caption, f"{row['label']}, {column['label']}, {title or image}", key))
                 if strip:
-                    names = [row["label"], series["label"] if len(grid.series) > 1 else "", NAMES.get(image, image)]
+                    names = [row["label"], series["label"] if len(grid.series) > 1 else "", title]
                     out.append(f"<h3>{html.escape(', '.join(n for n in names if n))}</h3><div class='shots'>{''.join(strip)}</div>")
     return "".join(out)
 

@@ -36,10 +36,10 @@ class Mode:
 def mode_of(paper, table, name):
     """The table's own mode over the paper's."""
     if name == "full":
-        return Mode()
+        return Mode(filter=table.get("filter", ""))
     whole, own = paper.data.get(name, {}), table.get(name, {})
     mode = {**whole, **own, "set": {**whole.get("set", {}), **own.get("set", {})}}
-    return Mode(name, mode.get("scale", {}), mode["set"], mode.get("rows"), mode.get("filter", ""))
+    return Mode(name, mode.get("scale", {}), mode["set"], mode.get("rows"), mode.get("filter", table.get("filter", "")))
 
 
 @dataclasses.dataclass

@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "shaders/alias_free_resolve.h"
+#include "technique/illustration.h"
 #include "techniques/alias_free_shadow_map/caster_pass.h"
 
 namespace penumbra {
 namespace alias_free {
 namespace {
 
-class AliasFreeShadowMap final : public Technique {
+class AliasFreeShadowMap final : public Technique, public Illustrated {
  public:
   explicit AliasFreeShadowMap(const Params& params)
       : params_(params), fitter_(params), lists_(params), casters_(params), pass_(params) {}
@@ -48,6 +50,7 @@ class AliasFreeShadowMap final : public Technique {
   }
 
   Counters counters() override;
+  std::vector<Illustration> illustrations() override;
 
   uint64_t structure_bytes() const override {
     return fitter_.bytes() + lists_.bytes() + casters_.bytes() + pass_.bytes();
@@ -95,6 +98,31 @@ Counters AliasFreeShadowMap::counters() {
   out["faces"] = lists_.texels() > static_cast<uint32_t>(params_.grid_size * params_.grid_size) ? 6.0 : 1.0;
   out["pairs_tested"] = pass_.count_pairs(casters_, fitter_, lists_, passes);
   return out;
+}
+
+std::vector<Illustration> AliasFreeShadowMap::illustrations() {
+  if (!last_.view_samples || lists_.texels() == 0) return {};
+  gpu::PassRecorder passes(*last_.scene_case->device);
+  const auto read = [&](const gpu::Buffer& buffer, std::size_t count) {
+    std::vector<uint32_t> words(count);
+    gpu::download(passes, "download", buffer, words.data(), count * 4);
+    return words;
+  };
+  const std::vector<uint32_t> lengths = read(lists_.lengths(), lists_.texels()),
+                              offsets = read(lists_.offsets(), lists_.texels()),
+                              slots = read(lists_.slots(), last_.view_samples->host().pixel_count());
+  passes.finish();
+  PixelFigures seen{std::vector<float>(slots.size(), std::numeric_limits<float>::quiet_NaN())};
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (slots[i] == no_slot) continue;
+    // The last list that begins at or before the view sample's place; empty lists begin where the next does.
+    const auto list = std::upper_bound(offsets.begin(), offsets.end(), slots[i]) - offsets.begin() - 1;
+    seen.values[i] = static_cast<float>(lengths[static_cast<std::size_t>(list)]);
+  }
+  const int side = params_.grid_size, faces = static_cast<int>(lists_.texels()) / (side * side);
+  return {{"list_lengths_over_light", "View samples in each list, in the light's view",
+           GridFigures{side, side * faces, {lengths.begin(), lengths.end()}, {}, {}, "", ""}},
+          {"list_length_of_view_sample", "View samples in the list of each view sample", std::move(seen)}};
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "technique/illustration.h"
+
 namespace penumbra::gears {
 namespace {
 
@@ -15,7 +17,7 @@ struct Areas {
 double cross(Vec2d o, Vec2d a, Vec2d b) { return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x); }
 
 // Andrew's monotone chain; the points are sorted.
-double hull_area(std::vector<Vec2d>& points) {
+std::vector<Vec2d> convex_hull(std::vector<Vec2d>& points) {
   std::ranges::sort(points, [](Vec2d a, Vec2d b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   std::vector<Vec2d> hull(2 * points.size());
   std::size_t size = 0;
@@ -26,9 +28,29 @@ double hull_area(std::vector<Vec2d>& points) {
   for (const Vec2d& p : points) add(p, 0);
   const std::size_t lower = size - 1;
   for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
+  hull.resize(size - 1);  // the last is the first
+  return hull;
+}
+
+double area(const std::vector<Vec2d>& polygon) {
   double twice = 0;
-  for (std::size_t i = 0; i + 1 < size; ++i) twice += hull[i].x * hull[i + 1].y - hull[i + 1].x * hull[i].y;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2d a = polygon[i], b = polygon[(i + 1) % polygon.size()];
+    twice += a.x * b.y - b.x * a.y;
+  }
   return std::abs(twice) / 2;
+}
+
+struct Rectangle {
+  Vec2d lo, hi;
+};
+Rectangle bounding_rectangle(const std::vector<Vec2d>& points) {
+  Rectangle r{points.front(), points.front()};
+  for (const Vec2d& p : points) {
+    r.lo = {std::min(r.lo.x, p.x), std::min(r.lo.y, p.y)};
+    r.hi = {std::max(r.hi.x, p.x), std::max(r.hi.y, p.y)};
+  }
+  return r;
 }
 
 class Projector {
@@ -40,19 +62,14 @@ class Projector {
   }
 
   // False when the shadow volume reaches the camera's plane.
-  bool project(const Geometry& geometry, std::size_t triangle, Areas& areas) {
+  bool project(const Geometry& geometry, std::size_t triangle) {
     points_.clear();
     for (int k = 0; k < 3; ++k)
       if (!add_corner(camera(Vec3d(geometry.corner(triangle, k))))) return false;
-    Vec2d lo = points_.front(), hi = lo;
-    for (const Vec2d& p : points_) {
-      lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
-      hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
-    }
-    areas.box += (hi.x - lo.x) * (hi.y - lo.y);
-    areas.hull += hull_area(points_);
     return true;
   }
+  // On the image plane: the vertices of the volume that was projected last.
+  std::vector<Vec2d>& points() { return points_; }
 
  private:
   static Vec3d apply(const Vec4f& x, const Vec4f& y, const Vec4f& z, Vec3d d) {
@@ -121,12 +138,43 @@ void add_area_counters(const Geometry& geometry, const FrameConstants& constants
                     step = std::max<std::size_t>(1, count / most_triangles);
   Areas areas;
   double left_out = 0;
-  for (std::size_t t = 0; t < count; t += step)
-    if (!projector.project(geometry, t, areas)) ++left_out;
+  for (std::size_t t = 0; t < count; t += step) {
+    if (!projector.project(geometry, t)) {
+      ++left_out;
+      continue;
+    }
+    const Rectangle r = bounding_rectangle(projector.points());
+    areas.box += (r.hi.x - r.lo.x) * (r.hi.y - r.lo.y);
+    areas.hull += area(convex_hull(projector.points()));
+  }
   counters["area_bounding_rectangles"] = areas.box;
   counters["area_convex_hulls"] = areas.hull;
   counters["area_ratio"] = areas.hull > 0 ? areas.box / areas.hull : 0;
   counters["area_triangles_left_out"] = left_out;
+}
+
+std::vector<ProjectedVolume> projected_volumes(const Geometry& geometry, const FrameConstants& constants,
+                                               const Header& header, uint32_t grid_size, std::size_t most) {
+  Projector projector(constants, header);
+  const double side = grid_size;
+  const auto in_cells = [&](Vec2d p) {
+    return Vec2d{(p.x - double(header.grid_lo[0])) * double(header.grid_scale[0]),
+                 (p.y - double(header.grid_lo[1])) * double(header.grid_scale[1])};
+  };
+  std::vector<ProjectedVolume> volumes;
+  // More than are wanted are looked at: many touch no cell.
+  for (std::size_t t = 0, step = every_nth(geometry.triangle_count(), 16 * most);
+       t < geometry.triangle_count(); t += step) {
+    if (!projector.project(geometry, t)) continue;
+    for (Vec2d& p : projector.points()) p = in_cells(p);
+    const Rectangle r = bounding_rectangle(projector.points());
+    if (r.lo.x >= side || r.lo.y >= side || r.hi.x <= 0 || r.hi.y <= 0) continue;
+    volumes.push_back({{r.lo, {r.hi.x, r.lo.y}, r.hi, {r.lo.x, r.hi.y}}, convex_hull(projector.points())});
+  }
+  std::vector<ProjectedVolume> picked;
+  for (std::size_t i = 0, step = every_nth(volumes.size(), most); i < volumes.size(); i += step)
+    picked.push_back(std::move(volumes[i]));
+  return picked;
 }
 
 }  // namespace penumbra::gears

@@ -16,6 +16,16 @@ struct CellCounts {
 // samples.
 void add_cell_counters(const CellCounts& counts, Counters& counters);
 
+// The shadow volume of one triangle on C's image plane, in cells of the grid: the bounding rectangle that is
+// assigned, and the convex hull that would do.
+struct ProjectedVolume {
+  std::vector<Vec2d> rectangle, hull;
+};
+// Of at most `most` triangles, evenly picked among those whose volume lies before C and touches the grid of
+// `grid_size` x `grid_size` cells.
+std::vector<ProjectedVolume> projected_volumes(const Geometry& geometry, const FrameConstants& constants,
+                                               const Header& header, uint32_t grid_size, std::size_t most);
+
 // Area of the projected shadow volumes' bounding rectangles against that of their convex hulls, on C's image
 // plane: over at most 20,000 triangles evenly picked; those that reach the camera's plane are left out and
 // counted.

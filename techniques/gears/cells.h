@@ -1,6 +1,7 @@
 // assignment: triangles. The paper's grid: view samples and triangles assigned to cells by projecting them
 // with the grid camera C, everything anew every frame [GEARS, A.1 to A.3].
 #pragma once
+#include "technique/illustration.h"
 #include "techniques/common/prefix_scan.h"
 #include "techniques/gears/frame_state.h"
 #include "techniques/gears/walker.h"
@@ -13,6 +14,9 @@ class Cells {
   void build(FrameState& state, const Geometry& geometry, gpu::PassRecorder& passes);
   void render(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes);
   void count(FrameState& state, const RenderInput& in, gpu::PassRecorder& passes, Counters& counters);
+  // Of the last frame: how its view samples and triangles lie on the grid, and what each view sample tests.
+  std::vector<Illustration> illustrations(FrameState& state, const RenderInput& in,
+                                          gpu::PassRecorder& passes) const;
   uint64_t bytes() const;
 
  private:

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "technique/illustration.h"
 #include "techniques/common/exact_choice.h"
 #include "techniques/common/mask_resolve.h"
 #include "techniques/gears/cells.h"
@@ -17,7 +18,7 @@ using namespace gears;
 
 constexpr int most_light_samples = 4096;
 
-class Gears final : public Technique {
+class Gears final : public Technique, public Illustrated {
  public:
   explicit Gears(const GearsParams& params) : params_(params) { state_.params = params; }
 
@@ -68,6 +69,12 @@ class Gears final : public Technique {
     passes_->finish();
     c["structure_bytes"] = static_cast<double>(structure_bytes());
     return c;
+  }
+
+  // Of the grid; clusters have none.
+  std::vector<Illustration> illustrations() override {
+    if (!passes_ || clusters()) return {};
+    return cells_.illustrations(state_, last_, *passes_);
   }
 
   uint64_t structure_bytes() const override { return state_.bytes() + clusters_.bytes() + cells_.bytes(); }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <optional>
 
+#include "technique/illustration.h"
 #include "techniques/common/mask_resolve.h"
 #include "techniques/sample_based_soft/coherent_shading.h"
 #include "techniques/sample_based_soft/soft_pass.h"
@@ -15,7 +17,7 @@ namespace {
 
 using namespace sample_based_soft;
 
-class SampleBasedSoft final : public Technique {
+class SampleBasedSoft final : public Technique, public Illustrated {
  public:
   explicit SampleBasedSoft(const Params& params) { state_.params = params; }
 
@@ -73,6 +75,7 @@ class SampleBasedSoft final : public Technique {
   }
 
   Counters counters() override;
+  std::vector<Illustration> illustrations() override;
 
   std::vector<float> cosines() override {
     return state_.params.coherent_shading && passes_ ? shading_.download(state_, *passes_)
@@ -182,6 +185,39 @@ Counters SampleBasedSoft::counters() {
   out["walk_dispatches"] = dispatches;
   out["table_bytes"] = state_.params.half_spaces == Params::HalfSpaces::table ? double(table_.bytes()) : 0.0;
   return out;
+}
+
+std::vector<Illustration> SampleBasedSoft::illustrations() {
+  if (!passes_ || lists_.group_count() == 0) return {};
+  const auto read = [&](const gpu::Buffer& buffer, std::size_t count) {
+    std::vector<uint32_t> words(count);
+    gpu::download(*passes_, "read_lists", buffer, words.data(), count * 4);
+    return words;
+  };
+  const std::size_t groups = lists_.group_count();
+  const std::vector<uint32_t> lengths = read(lists_.lengths(), state_.lists()),
+                              casters = read(coverage_.counts(), state_.lists()),
+                              slots = read(lists_.slots(), groups * state_.lanes),
+                              list_of = read(lists_.group_lists(), groups);
+  passes_->finish();
+  const std::vector<float> none(state_.pixels(), std::numeric_limits<float>::quiet_NaN());
+  PixelFigures length{none}, tested{none};
+  for (std::size_t s = 0; s < slots.size(); ++s) {
+    if (slots[s] >= none.size()) continue;
+    const uint32_t list = list_of[s / state_.lanes];
+    length.values[slots[s]] = static_cast<float>(lengths[list]);
+    tested.values[slots[s]] = static_cast<float>(casters[list]);
+  }
+  const auto side = static_cast<int>(state_.grid_size());
+  const auto over_light = [&](const std::vector<uint32_t>& counts) {
+    return GridFigures{side, side, {counts.begin(), counts.begin() + side * side}, {}, {}, "", ""};
+  };
+  return {{"list_lengths_over_light", "View samples in each list, in the light's view", over_light(lengths)},
+          {"triangles_over_light", "Triangles whose influence region touches each list, in the light's view",
+           over_light(casters)},
+          {"list_length_of_view_sample", "View samples in the list of each view sample", std::move(length)},
+          {"triangles_per_view_sample", "Triangles that each view sample may have to be tested against",
+           std::move(tested)}};
 }
 
 }  // namespace

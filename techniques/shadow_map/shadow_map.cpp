@@ -6,7 +6,7 @@ namespace penumbra {
 namespace shadow_map {
 namespace {
 
-class ShadowMap final : public Technique {
+class ShadowMap final : public Technique, public Illustrated {
  public:
   explicit ShadowMap(const Params& params) : renderer_(params) {}
   std::optional<std::string> supports(const Case& c) const override { return renderer_.supports(c); }
@@ -17,6 +17,7 @@ class ShadowMap final : public Technique {
     renderer_.render(in, light_point(in.scene_case->frame->light), passes);
   }
   Counters counters() override { return renderer_.counters(); }
+  std::vector<Illustration> illustrations() override { return renderer_.illustrations(); }
   uint64_t structure_bytes() const override { return renderer_.bytes(); }
 
  private:

@@ -1,13 +1,14 @@
 #include "techniques/soft_shadow_volume/soft_shadow_volume.h"
 
 #include "techniques/soft_shadow_volume/casters.h"
+#include "techniques/soft_shadow_volume/illustrations.h"
 #include "techniques/soft_shadow_volume/wedge_pass.h"
 
 namespace penumbra {
 namespace soft_shadow_volume {
 namespace {
 
-class SoftShadowVolume final : public Technique {
+class SoftShadowVolume final : public Technique, public Illustrated {
  public:
   explicit SoftShadowVolume(const Params& params) : params_(params), wedges_(params) {}
 
@@ -70,6 +71,13 @@ class SoftShadowVolume final : public Technique {
             {"whole_picture_wedges", sum.whole_picture},
             {"near_caps", near_caps},
             {"eye_volumes", eye}};
+  }
+
+  std::vector<Illustration> illustrations() override {
+    if (!last_.scene_case) return {};
+    gpu::PassRecorder passes(*last_.scene_case->device);
+    return illustrate(wedges_, silhouettes_, parts_of(last_.scene_case->frame->light, params_.split), last_,
+                      passes);
   }
 
   uint64_t structure_bytes() const override { return silhouettes_.bytes() + wedges_.bytes(); }

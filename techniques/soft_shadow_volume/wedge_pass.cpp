@@ -283,24 +283,30 @@ void WedgePass::run(const RenderInput& in, const Silhouettes& silhouettes, const
   resolve(in, silhouettes, part, first, passes);
 }
 
-WedgeCounts WedgePass::count(const RenderInput& in, const Silhouettes& silhouettes, const Part& part,
-                             gpu::PassRecorder& passes) {
-  WedgeCounts counts;
-  if (shape_ == SHAPE_POINT || silhouettes.count() == 0) return counts;
+WedgePass::Wedges WedgePass::read(const RenderInput& in, const Silhouettes& silhouettes, const Part& part,
+                                  gpu::PassRecorder& passes) {
+  Wedges drawn{std::vector<Vec2f>(pixels(in)), {}};
+  if (shape_ == SHAPE_POINT || silhouettes.count() == 0) return drawn;
+  drawn.wedges.resize(silhouettes.count());
   classify(in, part, passes);
   make_wedges(in, silhouettes, part, passes);
-  std::vector<Vec2f> sums(pixels(in));
-  std::vector<Wedge> wedges(silhouettes.count());
   passes.device_pass("coverage", [&](gpu::Commands& commands) {
     draw_wedges(commands, in, silhouettes, part, true);
     commands.barrier();
     commands.copy_image_to_buffer(sums_, sum_buffer_, VK_IMAGE_ASPECT_COLOR_BIT);
   });
-  gpu::download(passes, "download", sum_buffer_, sums.data(), sums.size() * sizeof(Vec2f));
-  gpu::download(passes, "download", wedges_, wedges.data(), wedges.size() * sizeof(Wedge));
+  gpu::download(passes, "download", sum_buffer_, drawn.sums.data(), drawn.sums.size() * sizeof(Vec2f));
+  gpu::download(passes, "download", wedges_, drawn.wedges.data(), drawn.wedges.size() * sizeof(Wedge));
   passes.finish();
-  for (const Vec2f& s : sums) counts.fragments += double(s.x), counts.pixels += double(s.y);
-  for (const Wedge& w : wedges) counts.whole_picture += w.edge[1].w == float(WHOLE_PICTURE);
+  return drawn;
+}
+
+WedgeCounts WedgePass::count(const RenderInput& in, const Silhouettes& silhouettes, const Part& part,
+                             gpu::PassRecorder& passes) {
+  const Wedges drawn = read(in, silhouettes, part, passes);
+  WedgeCounts counts;
+  for (const Vec2f& s : drawn.sums) counts.fragments += double(s.x), counts.pixels += double(s.y);
+  for (const Wedge& w : drawn.wedges) counts.whole_picture += w.edge[1].w == float(WHOLE_PICTURE);
   return counts;
 }
 

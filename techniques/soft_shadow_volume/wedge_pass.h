@@ -30,6 +30,13 @@ class WedgePass {
   // Statistics of one part: draws its wedges again.
   WedgeCounts count(const RenderInput& in, const Silhouettes& silhouettes, const Part& part,
                     gpu::PassRecorder& passes);
+  // What such statistics are made of.
+  struct Wedges {
+    std::vector<Vec2f> sums;  // per pixel: wedges drawn, and those whose edge hides a part of the light
+    std::vector<Wedge> wedges;
+  };
+  Wedges read(const RenderInput& in, const Silhouettes& silhouettes, const Part& part,
+              gpu::PassRecorder& passes);
   uint64_t bytes() const;
 
  private:

@@ -7,6 +7,13 @@ namespace penumbra::shadow_volume {
 namespace {
 
 constexpr double stencil_values = 256;
+// Sides that are drawn over the scene: all of them would hide it.
+constexpr std::size_t most_sides = 400;
+
+Mat4d view_of(const LastFrame& last) {
+  const ViewSamples& samples = *last.in.view_samples;
+  return last.in.scene_case->frame->camera.clip_from_world(samples.width(), samples.height());
+}
 
 // Draws counts and reads them back.
 std::vector<float> read_counts(gpu::Device& device, FragmentCounts& counts, const gpu::Image& depth,
@@ -45,7 +52,7 @@ Counters count(const Params& params, Volumes& volumes, const StencilPass& stenci
   if (!FragmentCounts::supported(device)) return out;
 
   const ViewSamples& samples = *last.in.view_samples;
-  const Mat4d view = last.in.scene_case->frame->camera.clip_from_world(samples.width(), samples.height());
+  const Mat4d view = view_of(last);
   FragmentCounts counts;  // its own: what the technique holds stays as it was
   counts.setup(device);
   const auto read_volumes = [&](Variant variant, const std::optional<Mat4d>& near_plane) {
@@ -75,6 +82,58 @@ Counters count(const Params& params, Volumes& volumes, const StencilPass& stenci
     streaks += samples.host().triangle[i] != no_triangle && held[i] != truth[i];
   out["streak_pixels"] = streaks;
   return out;
+}
+
+static WorldLines lines_of_sides(const Volumes& volumes, const LastFrame& last) {
+  const uint32_t indices = volumes.read_draws().list[LIST_SIDES].index_count,
+                 each = volumes.indices_per_quad();
+  std::vector<uint32_t> sides(indices);
+  gpu::PassRecorder passes(*last.in.scene_case->device);
+  if (indices > 0)
+    gpu::download(passes, "download", volumes.indices(LIST_SIDES), sides.data(), sides.size() * 4);
+  passes.finish();
+  const Geometry& g = last.in.scene_case->frame->geometry;
+  const Vec4f light = volumes.light().towards;
+  const auto at = [&](uint32_t v) {
+    const Vec3f p = g.positions[v];
+    return Vec4f{p.x, p.y, p.z, 1};
+  };
+  const auto away = [&](uint32_t v) {
+    const Vec3f d = g.positions[v] * light.w - light.xyz();
+    return Vec4f{d.x, d.y, d.z, 0};
+  };
+  WorldLines lines{{}, {"sides of shadow volumes", "silhouette edges"}};
+  const std::size_t quads = indices / each, step = every_nth(quads, most_sides);
+  for (std::size_t q = 0; q < quads; ++q) {
+    // Of a side's vertices two are the edge's; the others are moved to infinity.
+    uint32_t ends[2] = {UINT32_MAX, UINT32_MAX};
+    for (uint32_t k = 0; k < each; ++k) {
+      const uint32_t v = sides[q * each + k];
+      if (v >= g.positions.size() || v == ends[0]) continue;
+      ends[ends[0] == UINT32_MAX ? 0 : 1] = v;
+    }
+    if (ends[1] == UINT32_MAX) continue;
+    lines.segments.push_back({at(ends[0]), at(ends[1]), 1});
+    if (q % step == 0) lines.segments.push_back({at(ends[0]), away(ends[0]), 0});
+  }
+  return lines;
+}
+
+std::vector<Illustration> illustrate(const Volumes& volumes, const StencilPass& stencil,
+                                     const LastFrame& last) {
+  if (!last.in.view_samples) return {};
+  std::vector<Illustration> shown{
+      {"volumes_over_scene", "Silhouettes and some sides of shadow volumes", lines_of_sides(volumes, last)}};
+  gpu::Device& device = *last.in.scene_case->device;
+  if (!FragmentCounts::supported(device)) return shown;
+  FragmentCounts counts;
+  counts.setup(device);
+  shown.push_back({"volume_fragments", "Fragments of shadow volumes in each pixel",
+                   PixelFigures{read_counts(device, counts, stencil.image(), [&](gpu::Commands& commands) {
+                     counts.fill(commands, volumes, stencil.image(), last.variant, view_of(last),
+                                 last.near_plane);
+                   })}});
+  return shown;
 }
 
 }  // namespace penumbra::shadow_volume

@@ -1,5 +1,6 @@
 // Statistics of the last frame, as README.md lists them: drawn again into counts that cannot wrap.
 #pragma once
+#include "technique/illustration.h"
 #include "techniques/stencil_shadow_volume/stencil_pass.h"
 
 namespace penumbra::shadow_volume {
@@ -16,5 +17,9 @@ struct LastFrame {
 
 // Extracts the volumes anew where ZP+ is held against z-fail; the next frame does so anyway.
 Counters count(const Params& params, Volumes& volumes, const StencilPass& stencil, const LastFrame& last);
+
+// Fragments of volumes in each pixel, and silhouettes with a part of their sides.
+std::vector<Illustration> illustrate(const Volumes& volumes, const StencilPass& stencil,
+                                     const LastFrame& last);
 
 }  // namespace penumbra::shadow_volume

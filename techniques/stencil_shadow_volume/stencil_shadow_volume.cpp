@@ -13,7 +13,7 @@ namespace {
 // Volumes over each other that the stencil surely counts: 255, less what rounding at rims may add.
 constexpr uint32_t safe_layers = 250;
 
-class StencilShadowVolume final : public Technique {
+class StencilShadowVolume final : public Technique, public Illustrated {
  public:
   StencilShadowVolume(const Params& params, bool per_sample)
       : params_(params), per_sample_(per_sample), volumes_(params) {}
@@ -67,6 +67,8 @@ class StencilShadowVolume final : public Technique {
   }
 
   Counters counters() override { return count(params_, volumes_, stencil_, last_); }
+  // With many light samples, of the last.
+  std::vector<Illustration> illustrations() override { return illustrate(volumes_, stencil_, last_); }
 
   uint64_t structure_bytes() const override { return volumes_.bytes() + stencil_.bytes() + mean_.bytes(); }
 

@@ -143,6 +143,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "c.json:1:13: /measure: found max_time_s 1 below min_time_s 5, expected it above."},
         BadConfig{with(R"("measure": {"target_interval": 2})"),
                   "c.json:1:33: /measure/target_interval: found 2, expected a number from 0 to 1."},
+        BadConfig{with(R"("measure": {"counters": 1})"),
+                  "c.json:1:26: /measure/counters: found 1, expected true or false."},
         BadConfig{with(R"("reference": {"samples": 9})"),
                   "c.json:1:16: /reference/samples: found the key \"samples\", expected a key of reference."
                   " Valid: light_samples."},

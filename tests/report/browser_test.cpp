@@ -27,6 +27,13 @@ TEST(ReportInBrowser, SortsFiltersFlicksAndZooms) {
   EXPECT_GE(outcome["checks"].size(), 30u);
 }
 
+TEST(ReportInBrowser, PlaysSequencesAndShowsDiagnostics) {
+  ScratchFolder scratch;
+  test::write_moving_run(scratch / "run", 12);
+  write_report(scratch / "run", scratch / "report");
+  expect_all(test::selftest(scratch / "report", scratch / "profile", "tests/report/moving_selftest.js"));
+}
+
 TEST(ReportInBrowser, ShowsARunWithoutPoints) {
   ScratchFolder scratch;
   test::write_large_run(scratch / "run", 0);

@@ -275,6 +275,38 @@ json write_synthetic_run(const fs::path& folder, const SyntheticRun& o) {
   return save(folder, header("synthetic", reports), points);
 }
 
+json write_moving_run(const fs::path& folder, int frames) {
+  const json still = write_synthetic_run(folder);
+  json points = json::array();
+  for (std::size_t variant = 0; variant < 2; ++variant)
+    for (int frame = 0; frame < frames; ++frame) {
+      json point = still["points"][variant];
+      point["id"] = fmt::format("{}-{}", point["id"].get<std::string>(), frame);
+      point["frame"] = frame;
+      point["metrics"]["flicker"] = frame > 0 ? json(0.01 * frame) : json();
+      if (variant == 0 && frame == 0) {
+        point["images"]["diagnostic_lists"] = point["images"]["shaded"];
+        point["images"]["diagnostic_zones"] = point["images"]["reference_shaded"];
+        point["diagnostics"] = {json{{"name", "lists"},
+                                     {"title", "Lists </script><script>window.hacked=1</script>"},
+                                     {"kind", "figures"},
+                                     {"high", 99.0},
+                                     {"median", 3.0},
+                                     {"above_none", 12},
+                                     {"colors", {"#000000", "#ffff00"}},
+                                     {"marks", {0, 2.2, 9, 31, 99}}},
+                                json{{"name", "zones"},
+                                     {"title", "Zones"},
+                                     {"kind", "classes"},
+                                     {"names", {"umbra", "penumbra"}},
+                                     {"colors", {"#0000ff", "#ff0000"}},
+                                     {"pixels", {5, 7}}}};
+      }
+      points.push_back(std::move(point));
+    }
+  return save(folder, header("moving", json::array()), points);
+}
+
 json write_large_run(const fs::path& folder, int count) {
   std::mt19937 random(2);
   SyntheticRun o;

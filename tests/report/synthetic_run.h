@@ -18,6 +18,9 @@ struct SyntheticRun {
 // Returns the content of results.json, which is written too.
 nlohmann::json write_synthetic_run(const std::filesystem::path& folder, const SyntheticRun& options = {});
 
+// A sequence of `frames` frames of two variants, the first of them with diagnostic pictures.
+nlohmann::json write_moving_run(const std::filesystem::path& folder, int frames);
+
 // `count` points without pictures.
 nlohmann::json write_large_run(const std::filesystem::path& folder, int count);
 

@@ -111,7 +111,9 @@
 
   P.build_glance(at("glance-table"));
   P.build_gallery(at("gallery"), at("gallery-link"));
+  P.build_sequences(at("sequences"), at("sequences-link"));
   P.build_flicker(at("flicker"));
+  P.build_diagnostics(at("diagnostics"), at("diagnostics-link"));
   P.build_viewer(at("viewer"));
   P.build_plots(at("plot-cards"));
   P.build_table(at("table"));

@@ -1,5 +1,6 @@
 // Statistics of the last frame, as README.md lists them.
 #pragma once
+#include "technique/illustration.h"
 #include "technique/technique.h"
 #include "techniques/common/shadow_maps/fitter.h"
 
@@ -11,5 +12,9 @@ double texel_in_pixels(const FittedLayer& layer, double map_size, const Camera& 
                        double pixel_x, double pixel_y, Vec3d position, Vec3d normal);
 
 Counters count(const Params& params, const Fitted& fitted, uint64_t map_bytes, const RenderInput& last);
+
+// Texels' sizes; where there are several maps, which of them each view sample looks into, and what they
+// cover.
+std::vector<Illustration> illustrate(const Params& params, const Fitted& fitted, const RenderInput& last);
 
 }  // namespace penumbra::shadow_map

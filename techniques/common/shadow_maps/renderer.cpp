@@ -72,4 +72,8 @@ Counters Renderer::counters() const {
   return count(params_, fitter_.result(), maps_.image().bytes() + moments_.bytes(), last_);
 }
 
+std::vector<Illustration> Renderer::illustrations() const {
+  return illustrate(params_, fitter_.result(), last_);
+}
+
 }  // namespace penumbra::shadow_map

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "technique/illustration.h"
 #include "techniques/common/shadow_maps/lookup.h"
 
 namespace penumbra::shadow_map {
@@ -22,6 +23,7 @@ class Renderer {
 
   // Of the last render.
   Counters counters() const;
+  std::vector<Illustration> illustrations() const;
   uint64_t bytes() const { return fitter_.bytes() + maps_.bytes() + moments_.bytes() + lookup_.bytes(); }
 
  private:
