@@ -58,12 +58,12 @@ TEST(FalseColor, IsEverBrighter) {
 TEST(Diagnostics, ALineBeforeTheSceneIsSeenAndOneBehindItIsFaint) {
   const Square s;
   const Color before = at(s.lines({-3, 0, 1, 1}, {3, 0, 1, 1}).picture, 50, 50);
-  const Color behind = at(s.lines({-3, 0, -1, 1}, {3, 0, -1, 1}).picture, 50, 50);
+  const Color behind = at(s.lines({-9, 0, -1, 1}, {9, 0, -1, 1}).picture, 50, 50);
   EXPECT_GT(colorfulness(before), 100);
   EXPECT_GT(colorfulness(behind), 5);
   EXPECT_LT(colorfulness(behind), 50);
   // Beside the square nothing hides it.
-  EXPECT_GT(colorfulness(at(s.lines({-3, 0, -1, 1}, {3, 0, -1, 1}).picture, 2, 50)), 100);
+  EXPECT_GT(colorfulness(at(s.lines({-9, 0, -1, 1}, {9, 0, -1, 1}).picture, 2, 50)), 100);
   EXPECT_TRUE(grey(at(s.lines({-3, 0, 1, 1}, {3, 0, 1, 1}).picture, 50, 40)));
 }
 

@@ -65,8 +65,9 @@ Shown show(const std::string& technique, const ParamValues& params) {
     return shown;
   }
   for (Illustration& i : illustrated->illustrations()) {
-    if (const auto* pixels = std::get_if<PixelFigures>(&i.content))
+    if (const auto* pixels = std::get_if<PixelFigures>(&i.content)) {
       EXPECT_EQ(pixels->values.size(), s.pixels()) << i.name;
+    }
     EXPECT_EQ(i.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_"), std::string::npos) << i.name;
     shown.pictures.emplace(i.name, std::move(i));
   }
