@@ -213,10 +213,10 @@ std::vector<Illustration> SampleBasedSoft::illustrations() {
     return GridFigures{side, side, {counts.begin(), counts.begin() + side * side}, {}, {}, "", ""};
   };
   return {{"list_lengths_over_light", "View samples in each list, in the light's view", over_light(lengths)},
-          {"triangles_over_light", "Triangles whose influence region touches each list, in the light's view",
+          {"casters_over_light", "Casters whose influence region touches each list, in the light's view",
            over_light(casters)},
           {"list_length_of_view_sample", "View samples in the list of each view sample", std::move(length)},
-          {"triangles_per_view_sample", "Triangles that each view sample may have to be tested against",
+          {"casters_per_view_sample", "Casters that each view sample may have to be tested against",
            std::move(tested)}};
 }
 
