@@ -98,7 +98,7 @@ class Listings(Folder):
     def test_scenes_are_described(self):
         scene = json.loads(self.accepted("describe", "--scene", "columns", "--json"))
         self.assertEqual((scene["triangles"], scene["fidelity"], scene["animated"]), (840, "procedural", False))
-        self.assertEqual([light["name"] for light in scene["lights"]], ["key", "lamp", "sun", "spot", "ball"])
+        self.assertEqual([light["name"] for light in scene["lights"]], ["key", "lamp", "sun", "spot", "ball", "cloud"])
         self.assertEqual(scene["lights"][0]["sides"], [1.6, 1.6])
         self.assertEqual(scene["cameras"][0]["eye"], [2.0, 6.2, 7.8])
         self.assertEqual(scene["meshes"][0]["open_edges"], 18)
