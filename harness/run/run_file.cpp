@@ -54,7 +54,7 @@ void RunFile::add_scene(const nlohmann::json& scene) {
   nlohmann::json entry = scene;
   entry.erase("event");
   if (nlohmann::json* known = scene_entry(entry.at("name"))) {
-    if (known->value("content_hash", "") == entry.at("content_hash")) return;
+    if (known->value("content_hash", nlohmann::json()) == entry.at("content_hash")) return;
     *known = entry;
   } else {
     json_["scenes"].push_back(entry);
