@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/radical_inverse.h"
 #include "samples/shaders/light_rotation.h"
 
 namespace penumbra {
@@ -14,12 +15,6 @@ double unit(uint32_t bits) { return double(bits) * 0x1p-32; }
 
 // A random number in [0, 1) for sample i, dimension d.
 double random(uint32_t seed, uint32_t i, uint32_t d) { return unit(pcg(pcg(pcg(seed) + i) + d)); }
-
-double radical_inverse(uint32_t i, uint32_t base) {
-  double inverse = 1, value = 0;
-  for (; i; i /= base) value += (inverse /= base) * (i % base);
-  return value;
-}
 
 uint32_t reverse_bits(uint32_t v) {
   v = (v >> 1 & 0x55555555U) | (v & 0x55555555U) << 1;

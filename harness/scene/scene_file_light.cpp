@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/radical_inverse.h"
 #include "scene/scene_file.h"
 
 namespace penumbra::scene_file {
@@ -106,12 +107,6 @@ void read_texture(const JsonNode& node, Light& light) {
       static_cast<std::size_t>(light.texture_width) * static_cast<std::size_t>(light.texture_height));
 }
 
-double radical_inverse(int i, int base) {
-  double value = 0, digit = 1.0 / base;
-  for (; i > 0; i /= base, digit /= base) value += digit * (i % base);
-  return value;
-}
-
 // So many points of an ellipsoid, spread evenly: those of a Halton sequence in its box that lie in it.
 std::vector<Vec3d> read_ellipsoid(const JsonNode& node) {
   const char* what = "an ellipsoid of points";
@@ -122,7 +117,7 @@ std::vector<Vec3d> read_ellipsoid(const JsonNode& node) {
   if (!(axes.x > 0 && axes.y > 0 && axes.z > 0)) axes_node.fail("three lengths above 0");
   const auto count = static_cast<std::size_t>(node.require("count", what).integer(1, 32768));
   std::vector<Vec3d> points;
-  for (int i = 1; points.size() < count; ++i) {
+  for (uint32_t i = 1; points.size() < count; ++i) {
     const Vec3d unit{2 * radical_inverse(i, 2) - 1, 2 * radical_inverse(i, 3) - 1,
                      2 * radical_inverse(i, 5) - 1};
     if (dot(unit, unit) <= 1)
