@@ -183,6 +183,11 @@ Device::Device(const DeviceOptions& options) {
   impl_->create_device();
   impl_->query_caps();
   impl_->clock = probe_clock(*this);
+  const char* discrete = std::getenv("PENUMBRA_AS_DISCRETE");
+  if (discrete && std::strcmp(discrete, "1") == 0) {
+    impl_->caps.unified_memory = false;
+    impl_->clock = Clock::timestamps;
+  }
   if (const char* most = std::getenv("PENUMBRA_DEVICE_MEMORY_MIB")) impl_->limit = mebibytes(most);
 }
 

@@ -34,7 +34,6 @@ struct PassRecorder::Impl {
     check(vkCreateQueryPool(d.handle(), &info, nullptr, &queries), "query pool");
   }
   ~Impl() {
-    if (recording) vkEndCommandBuffer(commands);
     device.free_commands(commands);
     if (queries) vkDestroyQueryPool(device.handle(), queries, nullptr);
   }
@@ -95,7 +94,12 @@ void PassRecorder::device_pass(std::string_view name, const std::function<void(C
   s.begin();
   Commands commands(s.device, s.commands);
   if (s.queries) s.stamp();
-  record(commands);
+  try {
+    record(commands);
+  } catch (...) {
+    abandon();
+    throw;
+  }
   commands.barrier();
   if (s.queries) {
     vkCmdWriteTimestamp2(s.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, s.queries,
@@ -119,6 +123,14 @@ void PassRecorder::finish() {
   if (!impl_->recording) return;
   impl_->submit();
   impl_->collect();
+}
+
+void PassRecorder::abandon() {
+  Impl& s = *impl_;
+  if (s.recording) vkResetCommandBuffer(s.commands, 0);
+  s.recording = false;
+  s.pending.clear();
+  s.times.clear();
 }
 
 std::vector<PassTime> PassRecorder::take_times() {

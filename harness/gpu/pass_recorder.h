@@ -34,6 +34,9 @@ class PassRecorder {
   void host_pass(std::string_view name, const std::function<void()>& work);
   // Waits for all recorded passes. After it, mapped buffers and read-backs hold their results.
   void finish();
+  // Forgets the passes that are recorded but have not run, and all times: for whoever catches an error that
+  // left a technique between its passes. What they would have used may be gone already.
+  void abandon();
 
   // Passes since the last take_times(), in first-use order; passes of one name are added up.
   std::vector<PassTime> take_times();

@@ -153,6 +153,7 @@ std::optional<BatchRunner::Prepared> BatchRunner::prepare(const Point& point) {
       message = e.what();
     }
     const Heartbeat::State at = heartbeat_.read();
+    passes_.abandon();
     healthy_ = device_answers();
     if (!healthy_ || group_.empty()) {
       fail(point, message, at);
@@ -180,6 +181,7 @@ std::optional<BatchRunner::Prepared> BatchRunner::try_prepare(const Point& point
     reason = e.what();
   }
   if (reason) {
+    passes_.abandon();
     prepared.record["status"] = "unsupported";
     prepared.record["message"] = *reason;
     send_({{"event", "result"}, {"record", prepared.record}});

@@ -113,6 +113,7 @@ class Measurement {
     } catch (const std::exception& e) {
       result.error = e.what();
       result.failed_at = heartbeat_.read();
+      result.run->abandon();
     }
     heartbeat_.leave_point();
   }

@@ -85,6 +85,8 @@ class PointRun {
   FrameTimes frame();
   // One build more of a point that is not dynamic, as if the scene were new.
   void rebuild();
+  // After an error of any of these: nothing that it had recorded will run.
+  void abandon() { passes_.abandon(); }
   // Do the evaluated pixels hold, bit for bit, what the first frame gave? After seal_output(), right after
   // frame().
   bool repeats_first_frame();

@@ -4,6 +4,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/error.h"
 #include "gpu/pass_recorder.h"
 #include "shaders/busy_comp.h"
 
@@ -20,6 +21,19 @@ class Passes : public testing::Test {
   Device device;
   PassRecorder passes{device};
   ComputePipeline busy{device, busy_comp_spv, sizeof(Busy)};
+
+  // So many groups of 8000 turns that a pass of them takes some milliseconds on this device.
+  uint32_t groups_of_milliseconds(const Buffer& out) {
+    for (uint32_t groups = 400;; groups *= 2) {
+      const auto start = std::chrono::steady_clock::now();
+      passes.device_pass("grow", [&](Commands& c) {
+        c.dispatch(busy, Busy{out.address(), 8000, groups}, groups);
+      });
+      passes.take_times();
+      const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+      if (wall.count() > 4 || groups > (1U << 26)) return groups;
+    }
+  }
   void TearDown() override { EXPECT_TRUE(device.validation_messages().empty()); }
 };
 
@@ -62,10 +76,11 @@ TEST_F(Passes, ChargeEachPassWithItsOwnWork) {
   };
   passes.device_pass("compile", load(1));
   passes.take_times();
+  const uint32_t some = groups_of_milliseconds(out);
   const auto start = std::chrono::steady_clock::now();
-  passes.device_pass("small", load(400));
-  passes.device_pass("large", load(4000));
-  passes.device_pass("middle", load(1600));
+  passes.device_pass("small", load(some));
+  passes.device_pass("large", load(10 * some));
+  passes.device_pass("middle", load(4 * some));
   const std::vector<PassTime> times = passes.take_times();
   const double wall =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -73,6 +88,27 @@ TEST_F(Passes, ChargeEachPassWithItsOwnWork) {
   EXPECT_GT(times[1].ms, 3 * times[0].ms) << times[0].ms << " " << times[1].ms << " " << times[2].ms;
   EXPECT_GT(times[1].ms, 1.3 * times[2].ms);
   EXPECT_GT(times[2].ms, 1.3 * times[0].ms);
+}
+
+// Half-way through its passes a technique fails; what its passes would have used goes with it.
+TEST_F(Passes, ForgetWhatNeverRan) {
+  const Buffer kept(device, 256, Memory::device, "kept");
+  {
+    const Buffer gone(device, 256, Memory::device, "gone");
+    const auto fails = [&](Commands& c) {
+      c.fill(gone, 1);
+      throw PointError("half-way");
+    };
+    passes.device_pass("ran or recorded", [&](Commands& c) { c.fill(gone, 2); });
+    EXPECT_THROW(passes.device_pass("fails", fails), PointError);
+  }
+  passes.abandon();
+  EXPECT_TRUE(passes.take_times().empty());
+  const uint32_t seven = 7;
+  uint32_t back = 0;
+  upload(passes, "up", kept, &seven, sizeof seven);
+  download(passes, "down", kept, &back, sizeof back);
+  EXPECT_EQ(back, 7U);
 }
 
 TEST_F(Passes, MoveBytesBothWays) {

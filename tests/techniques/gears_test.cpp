@@ -235,7 +235,7 @@ TEST_P(GearsOnDevice, GoesOnWhereADispatchEnded) {
   GearsRun run(scene, with({{"dispatch_turns", int64_t{64}}, {"leaf_batch", int64_t{1}}}));
   run.render();
   EXPECT_EQ(run.picture().mask, whole.mask);
-  EXPECT_GT(std::get<double>(run.technique().counters().at("walk_dispatches")), 3);
+  EXPECT_GT(std::get<double>(run.technique().counters().at("walk_dispatches")), 1);  // 2 with 32 lanes
 }
 
 // More triangles before each view sample than the 65,535 loop turns after which lavapipe ends loops without a

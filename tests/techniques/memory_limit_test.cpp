@@ -81,7 +81,7 @@ TEST_F(MemoryLimit, EndsInAnErrorNeverInAnotherPicture) {
         EXPECT_NE(std::string(e.what()).find("MiB"), std::string::npos) << e.what();
       }
       device().set_memory_limit(0);
-      s.passes.take_times();
+      s.passes.abandon();
       EXPECT_EQ(device().allocated_bytes(), before) << part << " tenths leave something behind";
     }
     EXPECT_GE(failed, 5);
@@ -99,7 +99,7 @@ TEST_F(MemoryLimit, AbsurdSizesAreRefused) {
     try {
       s.render(*s.built(find_technique(all, name), params), true, false);
     } catch (const PointError& e) {
-      s.passes.take_times();
+      s.passes.abandon();
       return e.what();
     }
     return "";
