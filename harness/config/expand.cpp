@@ -277,7 +277,8 @@ std::vector<Point> expand(const Sweep& sweep, const DeclareScene& declare) {
   return Expansion(sweep, declare).run();
 }
 
-std::vector<Point> filter_points(std::vector<Point> points, const std::string& regex) {
+std::vector<Point> filter_points(std::vector<Point> points, const std::string& regex,
+                                 std::vector<Point>& left_out) {
   if (regex.empty()) return points;
   std::regex expression;
   try {
@@ -289,7 +290,7 @@ std::vector<Point> filter_points(std::vector<Point> points, const std::string& r
   }
   std::vector<Point> kept;
   for (const Point& p : points)
-    if (std::regex_search(p.key(), expression)) kept.push_back(p);
+    (std::regex_search(p.key(), expression) ? kept : left_out).push_back(p);
   if (kept.empty())
     throw InputError(fmt::format("--filter '{}': found no match among {} points, expected one such as '{}'.",
                                  regex, points.size(), points.empty() ? "" : points.front().key()));

@@ -17,7 +17,8 @@ using DeclareScene = std::function<SceneDeclaration(const std::string& name)>;
 std::vector<Point> expand(const Sweep& sweep, const DeclareScene& declare);
 
 // Points whose key matches. Throws InputError for a bad expression or when none is left.
-std::vector<Point> filter_points(std::vector<Point> points, const std::string& regex);
+std::vector<Point> filter_points(std::vector<Point> points, const std::string& regex,
+                                 std::vector<Point>& left_out);
 
 // 16 hex digits of everything that determines the result.
 std::string point_id(const Point& point);

@@ -89,7 +89,8 @@ void RunFile::add_costs(const nlohmann::json& costs) {
 // "harness" is what is left of the wall time: neither techniques (with their counters), references nor
 // pictures. An interrupted worker has not told what it spent, which would all be the harness's then: no
 // figure.
-void RunFile::finish(bool complete) {
+void RunFile::finish(bool complete, std::size_t points) {
+  json_["points"] = points;
   const double wall = now_s() - start_;
   nlohmann::json& costs = json_["cost_s"];
   double accounted = 0;

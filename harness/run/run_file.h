@@ -17,7 +17,7 @@ class RunFile {
   // Each writes the file. Throws WriteError.
   void set_device(const nlohmann::json& hello);
   void add_scene(const nlohmann::json& scene);
-  void finish(bool complete);
+  void finish(bool complete, std::size_t points);
   // Written with the next of the above.
   void add_view(const nlohmann::json& view);
   void add_costs(const nlohmann::json& costs);

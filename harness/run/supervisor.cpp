@@ -240,7 +240,7 @@ class Supervisor {
     try {
       write_summaries();
       count();
-      run_file_.finish(!stop_asked && !after_error);
+      run_file_.finish(!stop_asked && !after_error, plan_.points.size() + kept_beside().size());
       const RecordSource source = records(journal_, result_ids());
       write_results_json(options_.out / "results.json", run_file_.json(), source);
       AtomicFile csv(options_.out / "results.csv");
@@ -273,13 +273,24 @@ class Supervisor {
     }
   }
 
+  // Resumed with a filter, what the run has of the other points stays in its results.
+  std::vector<const Point*> kept_beside() const {
+    std::vector<const Point*> kept;
+    for (const Point& p : plan_.left_out)
+      if (options_.resume && journal_.find(p.id)) kept.push_back(&p);
+    return kept;
+  }
+
   std::vector<std::string> result_ids() const {
+    std::vector<const Point*> points;
+    for (const Point& p : plan_.points) points.push_back(&p);
+    for (const Point* p : kept_beside()) points.push_back(p);
     std::vector<std::string> ids;
     std::set<std::string> summaries;
-    for (const Point& p : plan_.points) ids.push_back(p.id);
+    for (const Point* p : points) ids.push_back(p->id);
     if (plan_.frames > 1)
-      for (const Point& p : plan_.points)
-        if (const std::string id = summary_id(p); summaries.insert(id).second) ids.push_back(id);
+      for (const Point* p : points)
+        if (const std::string id = summary_id(*p); summaries.insert(id).second) ids.push_back(id);
     return ids;
   }
 

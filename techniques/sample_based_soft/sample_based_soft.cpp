@@ -209,8 +209,15 @@ std::vector<Illustration> SampleBasedSoft::illustrations() {
     tested.values[slots[s]] = static_cast<float>(casters[list]);
   }
   const auto side = static_cast<int>(state_.grid_size());
+  // Lists lie tile by tile; the picture's rows are the light's view.
   const auto over_light = [&](const std::vector<uint32_t>& counts) {
-    return GridFigures{side, side, {counts.begin(), counts.begin() + side * side}, {}, {}, "", ""};
+    GridFigures grid{side, side, {}, {}, {}, "", ""};
+    const uint32_t size = state_.grid_size(), across = (size + tile_side - 1) / tile_side;
+    for (uint32_t y = 0; y < size; ++y)
+      for (uint32_t x = 0; x < size; ++x)
+        grid.values.push_back(static_cast<float>(
+            counts[(y / tile_side * across + x / tile_side) * tile_lists + y % tile_side * tile_side + x % tile_side]));
+    return grid;
   };
   return {{"list_lengths_over_light", "View samples in each list, in the light's view", over_light(lengths)},
           {"casters_over_light", "Casters whose influence region touches each list, in the light's view",

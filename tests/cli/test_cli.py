@@ -250,6 +250,22 @@ class Runs(Folder):
         quiet = penumbra("run", config, "--out", self.folder / "b", "--no-report")
         self.assertEqual((quiet.returncode, quiet.stderr), (0, ""))
 
+    def test_resume_with_a_filter_keeps_the_other_points(self):
+        config, out = self.write("two.json", dict(self.TINY, mask_size=[2, 3])), self.folder / "out"
+
+        def points():
+            return {p["id"]: p for p in json.loads((out / "results.json").read_text(encoding="utf-8"))["points"]}
+        self.assertEqual(penumbra("run", config, "--out", out, "--no-report").returncode, 0)
+        first = points()
+        result = penumbra("run", config, "--out", out, "--no-report", "--resume", "--filter", "mask_size=3,")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(points(), first)
+        self.assertEqual(len((out / "results.csv").read_text(encoding="utf-8").splitlines()), 3)
+        # A run of its own with a filter has that filter's points alone.
+        penumbra("run", config, "--out", self.folder / "own", "--no-report", "--filter", "mask_size=3,")
+        own = json.loads((self.folder / "own" / "results.json").read_text(encoding="utf-8"))
+        self.assertEqual((len(own["points"]), own["run"]["points"]), (1, 1))
+
     def test_an_interrupt_keeps_what_is_done_and_resume_goes_on(self):
         config, out = self.write("long.json", dict(self.TINY, mask_size=list(range(1, 41)))), self.folder / "out"
         process = subprocess.Popen([PROGRAM, "run", str(config), "--out", str(out), "--no-report"], stdout=subprocess.PIPE,

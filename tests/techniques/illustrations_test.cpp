@@ -116,6 +116,15 @@ TEST(Illustrations, SampleBasedShadowsShowTheirListsAndCasters) {
             number(c, "view_samples_listed") - number(c, "view_samples_outside"));
   EXPECT_GT(s.sum("casters_per_view_sample"), 0);
   EXPECT_GT(s.sum("casters_over_light"), 0);
+  // In the light's view neighbours have more casters in common than what is eight rows apart.
+  const std::vector<float>& casters = s.figures("casters_over_light");
+  const auto apart = [&](std::size_t rows) {
+    double sum = 0;
+    for (std::size_t i = 0; i + rows * 32 < casters.size(); ++i)
+      sum += std::abs(static_cast<double>(casters[i + rows * 32] - casters[i]));
+    return sum / static_cast<double>(casters.size() - rows * 32);
+  };
+  EXPECT_LT(apart(1), 0.5 * apart(8));
 }
 
 TEST(Illustrations, StencilVolumesShowSilhouettesAndFill) {
