@@ -3,8 +3,9 @@
 namespace penumbra::ray_tracing {
 namespace {
 
-// Below this the coherence hint is the faster (README.md has the figures).
-constexpr std::size_t coherent_triangles = 20000;
+// Below so many triangles for each light sample the coherence hint is the faster: the more samples a light has,
+// the closer lie the rays of a packet (README.md has the figures).
+constexpr std::size_t coherent_triangles = 200;
 
 int packet_of(RayTracingParams::Packet packet, int native_packet) {
   switch (packet) {
@@ -33,7 +34,8 @@ TraceSettings trace_settings(const RayTracingParams& params, std::size_t triangl
   s.pixels_in_packet =
       params.order == Order::pixels || (params.order == Order::automatic && light_samples < s.packet);
   const bool coherent = params.coherent == Coherent::on ||
-                        (params.coherent == Coherent::automatic && triangles < coherent_triangles);
+                        (params.coherent == Coherent::automatic &&
+                         triangles < coherent_triangles * static_cast<std::size_t>(light_samples));
   s.coherence = coherent ? embree::Coherence::coherent : embree::Coherence::incoherent;
   return s;
 }
