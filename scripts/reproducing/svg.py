@@ -91,14 +91,15 @@ def chart(title, lines, x_places, x_labels, y_log, y_label, x_label="", x_log=Fa
         out.append(f'<path class="grid" d="M{LEFT} {y(tick):.1f}H{WIDTH - RIGHT}"/>')
         out.append(text(LEFT - 7, y(tick) + 4, f"{tick:g}" if tick < 1e5 else f"{tick:.0e}", "tick", "end"))
     out.append(f'<path class="axis" d="M{LEFT} {HEIGHT - BOTTOM}H{WIDTH - RIGHT}"/>')
-    last = -1e9
+    ends = [-1e9, -1e9]  # of the labels in two rows: names that do not fit beside each other take turns
     for place, label in sorted(zip(x_places, x_labels)):
-        width = 6.2 * len(label)
-        if x(place) - width / 2 < last:
+        width = 7.2 * len(label)
+        left = min(x(place) - width / 2, WIDTH - width)
+        row = next((r for r in (0, 1) if left >= ends[r]), None)
+        if row is None or (row == 1 and x.log):
             continue
-        last = x(place) + width / 2 + 4
-        beyond = x(place) + width / 2 > WIDTH
-        out.append(text(WIDTH if beyond else x(place), HEIGHT - BOTTOM + 16, label, "tick", "end" if beyond else "middle"))
+        ends[row] = left + width + 4
+        out.append(text(left + width / 2, HEIGHT - BOTTOM + 14 + 12 * row, label, "tick"))
     if x_label:
         out.append(text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, x_label, "axis-label"))
     middle = (TOP + HEIGHT - BOTTOM) / 2
