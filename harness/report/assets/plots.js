@@ -212,10 +212,22 @@
   const option = (c) => [c.key, P.label_with_unit(c.key)];
   const by_key = (list, key) => list.find((c) => c.key === key) ?? list[0];
 
+  // Quantities before names and switches; among them first what most techniques were swept over.
+  const by_weight = (keys) => {
+    const weight = (key) => {
+      const points_of = (t) => P.points.filter((p) => p.technique === t);
+      const swept = P.techniques.filter((t) => P.values_of(points_of(t), key).length > 1).length;
+      const values = P.values_of(P.points, key);
+      const quantity = values.every((v) => typeof v !== "boolean" && P.axis_number(v) !== null);
+      return swept + (quantity ? P.techniques.length : 0);
+    };
+    return [...keys].sort((a, b) => weight(b) - weight(a));
+  };
+
   P.build_plots = (host) => {
     const time_list = times(),
       error_list = errors();
-    const axes = P.swept_keys.map((key) => [key, P.label(key)]);
+    const axes = by_weight(P.swept_keys).map((key) => [key, P.label(key)]);
     const time = { axis: axes[0]?.[0], y: "frame_ms" },
       pareto = { y: "metrics.rmse" },
       error = { axis: axes[0]?.[0], y: "metrics.rmse" };
