@@ -1,54 +1,11 @@
 """The program as a user meets it: exit codes, messages, what goes to which stream."""
 import json
-import os
-import pathlib
-import pty
-import signal
 import struct
-import subprocess
-import tempfile
-import time
 import unittest
 import zlib
 
 import schema_check
-
-PROGRAM = os.environ["PENUMBRA_PROGRAM"]
-SOURCE = pathlib.Path(os.environ["PENUMBRA_SOURCE"])
-
-
-def penumbra(*arguments, cwd=None, stdout=subprocess.PIPE, env=None):
-    environment = dict(os.environ, **(env or {}))
-    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, stdout=stdout, stderr=subprocess.PIPE, text=True,
-                          env=environment, timeout=120, check=False)
-
-
-class Folder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def write(self, name, text):
-        path = self.folder / name
-        path.write_text(text if isinstance(text, str) else json.dumps(text), encoding="utf-8")
-        return path
-
-    def refused(self, *arguments, code=2, says=(), **options):
-        """The call ends with `code`, prints no data, and one message that contains every text of `says`."""
-        result = penumbra(*arguments, **options)
-        self.assertEqual(result.returncode, code, result.stderr)
-        self.assertFalse(result.stdout)
-        self.assertTrue(result.stderr.startswith("penumbra: "), result.stderr)
-        self.assertNotIn("internal error", result.stderr)
-        for text in says:
-            self.assertIn(text, result.stderr)
-
-    def accepted(self, *arguments, **options):
-        result = penumbra(*arguments, **options)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(result.stderr, "")
-        return result.stdout
+from program import SOURCE, TINY, Folder, penumbra
 
 
 class Usage(Folder):
@@ -194,104 +151,6 @@ class Validation(Folder):
         self.wrong(dict(self.GOOD, scene=str(scene)), "scene.json:1:", "no_such_mesh.obj")
 
 
-class Runs(Folder):
-    TINY = {"scene": "torus_knot", "resolution": 32, "mask_size": [2, 4], "techniques": ["ray_tracing"], "images": [],
-            "reference": {"light_samples": 16},
-            "measure": {"warmup": 0, "repetitions": 1, "min_time_s": 0, "max_time_s": 5}}
-
-    def test_a_dry_run_prints_the_plan_and_writes_nothing(self):
-        config = self.write("tiny.json", self.TINY)
-        result = penumbra("run", "--set", "/seed=2", config, "--dry-run", cwd=self.folder)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(result.stdout.count("ray_tracing/torus_knot/"), 2)
-        self.assertEqual([p.name for p in self.folder.iterdir()], ["tiny.json"])
-
-    def test_a_run_gives_a_result_for_each_point_and_a_command_that_makes_it_again(self):
-        out = self.folder / "out"
-        result = penumbra("run", self.write("tiny.json", self.TINY), "--out", out, "--quiet")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        points = json.loads((out / "results.json").read_text(encoding="utf-8"))["points"]
-        self.assertEqual([p["status"] for p in points], ["ok", "ok"])
-        command = points[1]["command"].replace("penumbra run", f"'{PROGRAM}' run", 1)
-        again = subprocess.run(command + " --dry-run", shell=True, capture_output=True, text=True, check=False)
-        self.assertEqual(again.returncode, 0, again.stderr)
-        self.assertEqual(again.stdout.count("ray_tracing/torus_knot/"), 1)
-        self.assertIn(points[1]["id"], again.stdout)
-
-    def test_results_that_cannot_be_written_are_exit_code_4(self):
-        config = self.write("tiny.json", self.TINY)
-        self.refused("run", config, "--out", config / "below", code=4, says=["tiny.json"])
-        self.refused("run", config, "--out", "/proc/nowhere", code=4, says=["/proc/nowhere"])
-
-    def test_bad_input_runs_and_writes_nothing(self):
-        out = self.folder / "out"
-        for change in ({"resolution": 0}, {"resolution": 100000}, {"scene": "nowhere"}, {"mask_sise": 4}):
-            self.refused("run", self.write("bad.json", dict(self.TINY, **change)), "--out", out, says=["bad.json:1:"])
-        self.refused("run", self.write("tiny.json", self.TINY), "--out", out, "--filter", "gears", says=["--filter"])
-        self.refused("run", self.folder / "tiny.json", "--out", out, "--set", "mask_size=4", says=["--set"])
-        self.assertFalse(out.exists())
-
-    def test_progress_is_shown_on_a_terminal_alone(self):
-        config = self.write("tiny.json", self.TINY)
-        ours, terminal = pty.openpty()
-        process = subprocess.Popen([PROGRAM, "run", str(config), "--out", str(self.folder / "a"), "--no-report"],
-                                   stdout=subprocess.DEVNULL, stderr=terminal)
-        os.close(terminal)
-        shown = b""
-        try:
-            while piece := os.read(ours, 4096):
-                shown += piece
-        except OSError:  # how the end of a terminal is told
-            pass
-        os.close(ours)
-        self.assertEqual(process.wait(timeout=60), 0, shown)
-        self.assertRegex(shown.decode(), r"\[[#.]{20}\] [0-2]/2  about .+ left  ")
-        self.assertTrue(shown.endswith(b"\x1b[2K"), "the line is wiped at the end")
-        quiet = penumbra("run", config, "--out", self.folder / "b", "--no-report")
-        self.assertEqual((quiet.returncode, quiet.stderr), (0, ""))
-
-    def test_resume_with_a_filter_keeps_the_other_points(self):
-        config, out = self.write("two.json", dict(self.TINY, mask_size=[2, 3])), self.folder / "out"
-
-        def points():
-            return {p["id"]: p for p in json.loads((out / "results.json").read_text(encoding="utf-8"))["points"]}
-        self.assertEqual(penumbra("run", config, "--out", out, "--no-report").returncode, 0)
-        first = points()
-        result = penumbra("run", config, "--out", out, "--no-report", "--resume", "--filter", "mask_size=3,")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual(points(), first)
-        self.assertEqual(len((out / "results.csv").read_text(encoding="utf-8").splitlines()), 3)
-        # A run of its own with a filter has that filter's points alone.
-        penumbra("run", config, "--out", self.folder / "own", "--no-report", "--filter", "mask_size=3,")
-        own = json.loads((self.folder / "own" / "results.json").read_text(encoding="utf-8"))
-        self.assertEqual((len(own["points"]), own["run"]["points"]), (1, 1))
-
-    def test_an_interrupt_keeps_what_is_done_and_resume_goes_on(self):
-        config, out = self.write("long.json", dict(self.TINY, mask_size=list(range(1, 41)))), self.folder / "out"
-        process = subprocess.Popen([PROGRAM, "run", str(config), "--out", str(out), "--no-report"], stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        journal = out / "points.jsonl"
-        while not journal.exists() or journal.stat().st_size == 0:
-            self.assertIsNone(process.poll())
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        text, errors = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 130, errors)
-        self.assertIn("interrupted, --resume goes on", text)
-        kept = json.loads((out / "results.json").read_text(encoding="utf-8"))["points"]
-        self.assertTrue(0 < len(kept) < 40, len(kept))
-        result = penumbra("run", config, "--out", out, "--no-report", "--resume")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn(f"40 ok; {len(kept)} of them kept from before", result.stdout)
-
-    def test_no_driver_is_exit_code_3(self):
-        nowhere = str(self.folder / "none.json")
-        result = penumbra("run", self.write("tiny.json", self.TINY), "--out", self.folder / "out",
-                          env={"VK_ICD_FILENAMES": nowhere, "VK_DRIVER_FILES": nowhere})
-        self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertFalse((self.folder / "out").exists())
-
-
 class BadScenes(Folder):
     """Meshes and lights that cannot be: told before anything runs, with the place in the scene, and no folder is made."""
 
@@ -303,7 +162,7 @@ class BadScenes(Folder):
   "cameras": [{{"name": "front", "eye": [0, 2, 5], "target": [0, 0, 0]}}] }}""")
 
     def told(self, scene, *says):
-        config, out = self.write("config.json", dict(Runs.TINY, scene=str(scene))), self.folder / "out"
+        config, out = self.write("config.json", dict(TINY, scene=str(scene))), self.folder / "out"
         self.refused("run", config, "--out", out, says=["scene.json:", *says])
         self.refused("validate", config, says=["scene.json:", *says])
         self.refused("render", scene, "ray_tracing", "resolution=8", "-o", self.folder / "a.png", says=["scene.json:", *says])
@@ -334,12 +193,12 @@ class BadScenes(Folder):
     def test_every_bad_scene_of_a_sweep_is_told(self):
         self.write("empty.obj", ""), self.write("nan.obj", "v nan 0 0\nv 1 nan 0\nv 0 0 nan\nf 1 2 3\n")
         scenes = [str(self.scene(f'{{"file": "{name}.obj"}}', name=f"{name}.json")) for name in ("empty", "nan")]
-        self.refused("validate", self.write("config.json", dict(Runs.TINY, scene=[*scenes, "torus_knot"])),
+        self.refused("validate", self.write("config.json", dict(TINY, scene=[*scenes, "torus_knot"])),
                      says=["empty.obj", "nan.obj"])
 
     def test_single_vertices_that_are_not_finite_are_left_out_and_told(self):
         self.write("hole.obj", "v nan 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 2 3 4\n")
-        config, out = self.write("config.json", dict(Runs.TINY, scene=str(self.scene('{"file": "hole.obj"}')))), self.folder / "out"
+        config, out = self.write("config.json", dict(TINY, scene=str(self.scene('{"file": "hole.obj"}')))), self.folder / "out"
         result = penumbra("run", config, "--out", out, "--quiet", "--no-report")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("1 of 2 triangles are left out: 1 with a corner that is not finite", result.stderr)

@@ -4,7 +4,7 @@ import unittest
 import xml.etree.ElementTree as ET
 
 import schema_check
-from test_cli import PROGRAM, SOURCE, Folder, penumbra
+from program import PROGRAM, SOURCE, Folder, penumbra
 
 
 def stat(times):

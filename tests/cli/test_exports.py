@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import unittest
 
-from test_cli import PROGRAM, Folder, penumbra
+from program import PROGRAM, Folder, penumbra
 
 CONFIG = {"name": "two", "scene": ["torus_knot", "columns"], "resolution": 32, "mask_size": [2, 4],
           "techniques": ["ray_tracing", {"technique": "shadow_map", "params": {"pcf_kernel": [1, 3]}}, "planar_shadow"],

@@ -6,7 +6,7 @@ import random
 import subprocess
 import unittest
 
-from test_cli import PROGRAM, SOURCE, Folder
+from program import PROGRAM, SOURCE, Folder
 
 
 def script(name):
