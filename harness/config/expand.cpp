@@ -278,7 +278,7 @@ std::vector<Point> expand(const Sweep& sweep, const DeclareScene& declare) {
 }
 
 std::vector<Point> filter_points(std::vector<Point> points, const std::string& regex,
-                                 std::vector<Point>& left_out) {
+                                 std::vector<Point>* left_out) {
   if (regex.empty()) return points;
   std::regex expression;
   try {
@@ -290,7 +290,10 @@ std::vector<Point> filter_points(std::vector<Point> points, const std::string& r
   }
   std::vector<Point> kept;
   for (const Point& p : points)
-    (std::regex_search(p.key(), expression) ? kept : left_out).push_back(p);
+    if (std::regex_search(p.key(), expression))
+      kept.push_back(p);
+    else if (left_out)
+      left_out->push_back(p);
   if (kept.empty())
     throw InputError(fmt::format("--filter '{}': found no match among {} points, expected one such as '{}'.",
                                  regex, points.size(), points.empty() ? "" : points.front().key()));

@@ -18,7 +18,7 @@ std::vector<Point> expand(const Sweep& sweep, const DeclareScene& declare);
 
 // Points whose key matches. Throws InputError for a bad expression or when none is left.
 std::vector<Point> filter_points(std::vector<Point> points, const std::string& regex,
-                                 std::vector<Point>& left_out);
+                                 std::vector<Point>* left_out = nullptr);
 
 // 16 hex digits of everything that determines the result.
 std::string point_id(const Point& point);

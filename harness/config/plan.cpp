@@ -142,7 +142,7 @@ Plan load_plan(const std::filesystem::path& config, const PlanOptions& options, 
   const DeclareScene declare = [&](const std::string& name) { return declare_scene(name, scene_search); };
   Plan plan;
   plan.name = sweep.name;
-  plan.points = filter_points(expand(sweep, declare), options.filter, plan.left_out);
+  plan.points = filter_points(expand(sweep, declare), options.filter, &plan.left_out);
   for (Point& p : plan.points) p.invocation = invocation(config, options.set);
   plan.reference_samples = sweep.reference_samples;
   plan.images = sweep.images;

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "gpu/keep_drivers.h"
 
 namespace penumbra::gpu {
 namespace {
@@ -76,6 +77,7 @@ Instance::Instance(bool validation) {
         fmt::format("no Vulkan driver found (Vulkan error {}). Install one "
                     "(Debian, Ubuntu: mesa-vulkan-drivers has lavapipe).",
                     static_cast<int>(r)));
+  keep_drivers();
   if (validation) {
     const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
