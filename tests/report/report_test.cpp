@@ -101,7 +101,8 @@ TEST(Report, StandsAloneWhenMoved) {
   write_report(scratch / "run", scratch / "out");
   fs::remove_all(scratch / "run");
   fs::rename(scratch / "out", scratch / "elsewhere");
-  for (const json& pictures : written_data(scratch / "elsewhere")["pictures"])
+  const json data = written_data(scratch / "elsewhere");
+  for (const json& pictures : data["pictures"])
     for (const auto& [name, path] : pictures.items()) {
       EXPECT_TRUE(fs::path(path.get<std::string>()).is_relative());
       EXPECT_NO_THROW(read_png(scratch / "elsewhere" / path.get<std::string>())) << name;

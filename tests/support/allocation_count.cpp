@@ -10,15 +10,11 @@ static std::atomic<long> allocations{0};
 // Replaces the allocator's entry points in every program that links allocation_count(), for all of its
 // libraries too: operator new, vectors and C code all come by here.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-// The sanitizers have entry points of their own: only operator new can be counted.
-#include <new>
-void* operator new(std::size_t bytes) {
-  ++allocations;
-  if (void* p = std::malloc(bytes)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+// The sanitizers have entry points of their own, and call whoever asks for it.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*allocated)(const volatile void*, std::size_t),
+                                                         void (*freed)(const volatile void*));
+[[maybe_unused]] static const int hooked = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, std::size_t) { ++allocations; }, [](const volatile void*) {});
 #else
 extern "C" {
 void* __libc_malloc(std::size_t bytes);

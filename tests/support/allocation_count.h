@@ -2,6 +2,6 @@
 #pragma once
 
 namespace penumbra::testing {
-// Calls of malloc and its like so far (under the sanitizers: of operator new).
+// Calls of malloc and its like so far.
 long allocation_count();
 }  // namespace penumbra::testing
