@@ -47,7 +47,7 @@ struct Point {
 
 struct Plan {
   std::string name;
-  std::vector<Point> points;  // grouped: points that share scene, camera, resolution and frame are adjacent
+  std::vector<Point> points;    // grouped: points that share scene, camera, resolution and frame are adjacent
   std::vector<Point> left_out;  // those that the filter does not match
   int reference_samples = 4096;     // 0: no converged reference
   std::vector<std::string> images;  // visibility, shaded, error, mask, position, normal, triangle

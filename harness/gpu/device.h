@@ -41,8 +41,8 @@ struct DeviceOptions {
   bool validation = false;  // also switched on by PENUMBRA_VALIDATION=1
 };
 
-// PENUMBRA_AS_DISCRETE=1 drives a device that shares the host's memory as a discrete one is driven: memory not
-// mapped, passes recorded together and timed by timestamps. For tests: lavapipe's times are wrong then.
+// PENUMBRA_AS_DISCRETE=1 drives a device that shares the host's memory as a discrete one is driven: memory
+// not mapped, passes recorded together and timed by timestamps. For tests: lavapipe's times are wrong then.
 class Device {
  public:
   // Throws DeviceError (nothing found, name unknown with the list, a needed feature missing).

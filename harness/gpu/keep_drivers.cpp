@@ -1,5 +1,5 @@
-// In builds with the address sanitizer alone: what a driver leaks is known to be the driver's only while it is
-// loaded, and the loader unloads it with the instance.
+// In builds with the address sanitizer alone: what a driver leaks is known to be the driver's only while it
+// is loaded, and the loader unloads it with the instance.
 #include "gpu/keep_drivers.h"
 
 #if defined(__SANITIZE_ADDRESS__)

@@ -26,7 +26,9 @@ const ParamTable<RayTracingParams>& ray_tracing_params() {
               "light sample. auto is light, but pixels when there are fewer light samples than rays in a "
               "packet."});
     t.choice("coherent", &P::coherent, {"auto", "on", "off"},
-             {"", "", "Embree's coherence hint; auto is on below 200 triangles for each light sample, where it is the faster."});
+             {"", "",
+              "Embree's coherence hint; auto is on below 200 triangles for each light sample, where it is "
+              "the faster."});
     return t;
   }();
   return table;

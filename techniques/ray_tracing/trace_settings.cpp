@@ -3,8 +3,8 @@
 namespace penumbra::ray_tracing {
 namespace {
 
-// Below so many triangles for each light sample the coherence hint is the faster: the more samples a light has,
-// the closer lie the rays of a packet (README.md has the figures).
+// Below so many triangles for each light sample the coherence hint is the faster: the more samples a light
+// has, the closer lie the rays of a packet (README.md has the figures).
 constexpr std::size_t coherent_triangles = 200;
 
 int packet_of(RayTracingParams::Packet packet, int native_packet) {

@@ -215,8 +215,9 @@ std::vector<Illustration> SampleBasedSoft::illustrations() {
     const uint32_t size = state_.grid_size(), across = (size + tile_side - 1) / tile_side;
     for (uint32_t y = 0; y < size; ++y)
       for (uint32_t x = 0; x < size; ++x)
-        grid.values.push_back(static_cast<float>(
-            counts[(y / tile_side * across + x / tile_side) * tile_lists + y % tile_side * tile_side + x % tile_side]));
+        grid.values.push_back(
+            static_cast<float>(counts[(y / tile_side * across + x / tile_side) * tile_lists +
+                                      y % tile_side * tile_side + x % tile_side]));
     return grid;
   };
   return {{"list_lengths_over_light", "View samples in each list, in the light's view", over_light(lengths)},
