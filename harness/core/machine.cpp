@@ -18,7 +18,8 @@ json knobs(const json& environment) {
   json out = json::object();
   if (!environment.is_object()) return out;
   for (const auto& [name, value] : environment.items())
-    if (!name.starts_with("PENUMBRA_") || name == "PENUMBRA_VALIDATION") out[name] = value;
+    if (!name.starts_with("PENUMBRA_") || name == "PENUMBRA_VALIDATION" || name == "PENUMBRA_AS_DISCRETE")
+      out[name] = value;
   return out;
 }
 

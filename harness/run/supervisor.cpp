@@ -240,7 +240,7 @@ class Supervisor {
     try {
       write_summaries();
       count();
-      run_file_.finish(!stop_asked && !after_error, plan_.points.size() + kept_beside().size());
+      run_file_.finish(!stop_asked && !after_error, result_points().size());
       const RecordSource source = records(journal_, result_ids());
       write_results_json(options_.out / "results.json", run_file_.json(), source);
       AtomicFile csv(options_.out / "results.csv");
@@ -255,15 +255,25 @@ class Supervisor {
     outcome_.folder = options_.out;
   }
 
+  // Those of the plan and, resumed with a filter, what the run has of the others: it stays in the results.
+  std::vector<const Point*> result_points() const {
+    std::vector<const Point*> points;
+    for (const Point& p : plan_.points) points.push_back(&p);
+    for (const Point& p : plan_.left_out)
+      if (options_.resume && journal_.find(p.id)) points.push_back(&p);
+    return points;
+  }
+
   // A sequence is summed up once all of its frames are there, and again when one was run again.
   void write_summaries() {
     if (plan_.frames <= 1) return;
-    std::map<std::string, std::vector<std::size_t>> sequences;
-    for (std::size_t i = 0; i < plan_.points.size(); ++i) sequences[summary_id(plan_.points[i])].push_back(i);
-    for (const auto& [id, members] : sequences) {
+    std::map<std::string, std::vector<const Point*>> sequences;
+    for (const Point* p : result_points()) sequences[summary_id(*p)].push_back(p);
+    for (auto& [id, members] : sequences) {
+      std::ranges::sort(members, {}, &Point::frame);
       std::vector<nlohmann::json> frames;
-      for (std::size_t i : members)
-        if (const JournalEntry* entry = journal_.find(plan_.points[i].id))
+      for (const Point* p : members)
+        if (const JournalEntry* entry = journal_.find(p->id))
           frames.push_back(nlohmann::json::parse(journal_.line(*entry)));
       if (frames.size() != members.size() || frames.size() < 2) continue;
       nlohmann::json summary = sequence_summary(frames);
@@ -273,18 +283,8 @@ class Supervisor {
     }
   }
 
-  // Resumed with a filter, what the run has of the other points stays in its results.
-  std::vector<const Point*> kept_beside() const {
-    std::vector<const Point*> kept;
-    for (const Point& p : plan_.left_out)
-      if (options_.resume && journal_.find(p.id)) kept.push_back(&p);
-    return kept;
-  }
-
   std::vector<std::string> result_ids() const {
-    std::vector<const Point*> points;
-    for (const Point& p : plan_.points) points.push_back(&p);
-    for (const Point* p : kept_beside()) points.push_back(p);
+    const std::vector<const Point*> points = result_points();
     std::vector<std::string> ids;
     std::set<std::string> summaries;
     for (const Point* p : points) ids.push_back(p->id);

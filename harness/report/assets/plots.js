@@ -214,14 +214,14 @@
 
   // Quantities before names and switches; among them first what most techniques were swept over.
   const by_weight = (keys) => {
+    const points_of = P.techniques.map((t) => P.points.filter((p) => p.technique === t));
     const weight = (key) => {
-      const points_of = (t) => P.points.filter((p) => p.technique === t);
-      const swept = P.techniques.filter((t) => P.values_of(points_of(t), key).length > 1).length;
-      const values = P.values_of(P.points, key);
-      const quantity = values.every((v) => typeof v !== "boolean" && P.axis_number(v) !== null);
+      const swept = points_of.filter((points) => P.values_of(points, key).length > 1).length;
+      const quantity = P.values_of(P.points, key).every((v) => P.axis_number(v) !== null);
       return swept + (quantity ? P.techniques.length : 0);
     };
-    return [...keys].sort((a, b) => weight(b) - weight(a));
+    const weights = new Map(keys.map((key) => [key, weight(key)]));
+    return [...keys].sort((a, b) => weights.get(b) - weights.get(a));
   };
 
   P.build_plots = (host) => {
